@@ -1,0 +1,28 @@
+#pragma once
+
+#include <memory>
+
+#include <sweepgrid/sap/sweep_and_prune.hpp>
+
+namespace sweepgrid {
+
+/// The kinds of cell. All give the same overlaps; they differ in what makes them fast.
+enum class CellKind {
+  kBatch,      ///< batch insertion and removal (section 3.2.1): most objects move, or many come and go
+  kSegmented,  ///< segmented interval lists (section 3.2.2): few objects move, few come and go
+  kClassic,    ///< Baraff's sweep and prune: a baseline
+  kPlane,      ///< non-incremental sweeping plane: a baseline
+};
+
+/// Settings of a cell; the defaults are measured (see sap/README.md).
+struct CellOptions {
+  CellKind kind = CellKind::kBatch;
+  /// Endpoints per segment, at least 4 (kSegmented only; the paper finds about 2^5).
+  int segment_capacity = 32;
+};
+
+/// A new empty cell. Throws std::invalid_argument for a segment capacity below 4.
+template <class Scalar, int Dim>
+[[nodiscard]] std::unique_ptr<SweepAndPrune<Scalar, Dim>> make_cell(const CellOptions& options);
+
+}  // namespace sweepgrid

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <array>
+#include <bit>
+#include <concepts>
+#include <cstdint>
+#include <limits>
+#include <type_traits>
+
+#include <sweepgrid/sap/box.hpp>
+
+namespace sweepgrid {
+
+/// The unsigned integer that holds a Scalar's value in order-preserving form: 32 bits where they suffice, else 64.
+template <class Scalar>
+using OrderedBits = std::conditional_t<sizeof(Scalar) <= 4, std::uint32_t, std::uint64_t>;
+
+/// Maps a scalar to an unsigned integer so that a < b exactly when ordered_bits(a) < ordered_bits(b); -0.0 and 0.0 map
+/// alike. The whole of sweep and prune then runs on integers: no rounding, no NaN, and denormals stay apart even
+/// where the host flushes them to zero. Precondition: not NaN.
+template <class Scalar>
+[[nodiscard]] OrderedBits<Scalar> ordered_bits(Scalar value) {
+  using Bits = OrderedBits<Scalar>;
+  constexpr Bits kSign = Bits{1} << (8 * sizeof(Bits) - 1);
+  if constexpr (std::floating_point<Scalar>) {
+    static_assert(std::numeric_limits<Scalar>::is_iec559 && sizeof(Scalar) == sizeof(Bits));
+    Bits bits = std::bit_cast<Bits>(value);
+    if (bits == kSign) bits = 0;  // -0.0
+    return (bits & kSign) != 0 ? ~bits : bits | kSign;
+  } else if constexpr (std::signed_integral<Scalar>) {
+    return static_cast<Bits>(static_cast<std::make_signed_t<Bits>>(value)) ^ kSign;
+  } else {
+    static_assert(std::unsigned_integral<Scalar>);
+    return value;
+  }
+}
+
+/// A box whose coordinates are ordered bits. Closed, like Box.
+template <class Scalar, int Dim>
+struct OrderedBox {
+  using Bits = OrderedBits<Scalar>;
+
+  std::array<Bits, static_cast<std::size_t>(Dim)> min;
+  std::array<Bits, static_cast<std::size_t>(Dim)> max;
+
+  OrderedBox() = default;
+  explicit OrderedBox(const Box<Scalar, Dim>& box) {
+    for (int axis = 0; axis < Dim; ++axis) {
+      min[axis] = ordered_bits(box.min[axis]);
+      max[axis] = ordered_bits(box.max[axis]);
+    }
+  }
+
+  /// Overlap on every axis but `skipped`; pass -1 to skip none.
+  [[nodiscard]] bool overlaps_beside(int skipped, const OrderedBox& other) const {
+    bool overlap = true;
+    for (int axis = 0; axis < Dim; ++axis) {
+      // Bitwise on purpose: the outcome is unpredictable, and a branch per axis costs more than the comparisons.
+      const bool meets = (min[axis] <= other.max[axis]) & (other.min[axis] <= max[axis]);
+      overlap &= meets | (axis == skipped);
+    }
+    return overlap;
+  }
+
+  [[nodiscard]] bool overlaps(const OrderedBox& other) const { return overlaps_beside(-1, other); }
+
+  friend bool operator==(const OrderedBox&, const OrderedBox&) = default;
+};
+
+}  // namespace sweepgrid

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <memory>
+
+#include <oneapi/tbb/task_arena.h>
+
+#include <sweepgrid/scheduler/executor.hpp>
+
+namespace sweepgrid {
+
+/// Runs in the host's arena, with the host's workers and priorities. `arena` must outlive the executor.
+/// The only public header that includes oneTBB; clients that do not use it do not need oneTBB's headers.
+[[nodiscard]] std::shared_ptr<Executor> make_executor_in(oneapi::tbb::task_arena& arena);
+
+}  // namespace sweepgrid
