@@ -1,0 +1,174 @@
+#include <sweepgrid/scheduler/stage_graph.hpp>
+
+#include <atomic>
+#include <exception>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+
+#include <oneapi/tbb/flow_graph.h>
+
+#include "arena_executor.hpp"
+#include "task_order.hpp"
+
+namespace sweepgrid {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using Node = oneapi::tbb::flow::continue_node<oneapi::tbb::flow::continue_msg>;
+
+std::int64_t nanoseconds(Clock::duration duration) {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(duration).count();
+}
+
+/// One stage with the buffers that it keeps from run to run. Written by the one thread that runs the stage, except
+/// `records`, of which each task writes its own.
+struct Stage {
+  std::string name;
+  StageGraph::Plan plan;
+  StageGraph::Body body;
+  bool waits = false;
+  std::function<void(std::size_t)> run_bundle;
+  std::vector<std::uint64_t> costs;
+  TaskOrder order;
+  TaskTrace records;
+  double seconds = 0;
+  std::optional<Node> node;
+};
+
+}  // namespace
+
+struct StageGraph::Impl {
+  explicit Impl(std::shared_ptr<Executor> chosen)
+      : executor(std::move(chosen)), arena_executor(dynamic_cast<ArenaExecutor*>(executor.get())) {
+    // A flow graph runs where it was made.
+    if (arena_executor != nullptr) arena_executor->execute([this] { graph.emplace(); });
+  }
+
+  void run_stage(StageId id) noexcept;
+  void run_tasks(Stage& stage);
+  void run_recorded(StageId id, std::uint32_t task);
+  void collect_trace();
+
+  std::shared_ptr<Executor> executor;
+  ArenaExecutor* arena_executor;  ///< null: stages run one after another, in the order in which they were added
+  std::optional<oneapi::tbb::flow::graph> graph;
+  std::vector<std::unique_ptr<Stage>> stages;
+  bool recording = false;
+  TaskTrace trace;
+
+  Clock::time_point start;
+  std::atomic<bool> failed = false;
+  std::exception_ptr failure;  ///< written by the one that set `failed`, read after the run
+};
+
+// Catches here rather than let oneTBB cancel the graph: a flow graph whose nodes never throw needs no reset.
+void StageGraph::Impl::run_stage(StageId id) noexcept {
+  if (failed.load(std::memory_order_acquire)) return;
+  Stage& stage = *stages[id];
+  const Clock::time_point begin = Clock::now();
+  try {
+    stage.plan(stage.costs);
+    run_tasks(stage);
+  } catch (...) {
+    if (!failed.exchange(true, std::memory_order_acq_rel)) failure = std::current_exception();
+  }
+  stage.seconds = std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+void StageGraph::Impl::run_tasks(Stage& stage) {
+  if (stage.costs.empty()) return;
+  if (recording) stage.records.assign(stage.costs.size(), {});
+  if (arena_executor != nullptr) {
+    stage.order.assign_for_stealing(stage.costs, executor->concurrency());
+  } else {
+    stage.order.assign_descending(stage.costs);
+  }
+  executor->for_each(stage.order.bundle_count(), stage.run_bundle);
+}
+
+void StageGraph::Impl::run_recorded(StageId id, std::uint32_t task) {
+  Stage& stage = *stages[id];
+  const Clock::time_point begin = Clock::now();
+  stage.body(task);
+  stage.records[task] = {
+      id, task, stage.costs[task], executor->worker(), nanoseconds(begin - start), nanoseconds(Clock::now() - begin)};
+}
+
+void StageGraph::Impl::collect_trace() {
+  trace.clear();
+  for (const auto& stage : stages) trace.insert(trace.end(), stage->records.begin(), stage->records.end());
+}
+
+StageGraph::StageGraph(std::shared_ptr<Executor> executor) {
+  if (executor == nullptr) throw std::invalid_argument("a stage graph needs an executor");
+  impl_ = std::make_unique<Impl>(std::move(executor));
+}
+
+StageGraph::~StageGraph() = default;
+
+StageGraph::StageId StageGraph::add(std::string name, std::vector<StageId> after, Plan plan, Body body) {
+  Impl& impl = *impl_;
+  const auto id = static_cast<StageId>(impl.stages.size());
+  for (const StageId earlier : after) {
+    if (earlier >= id) {
+      throw std::invalid_argument("stage '" + name + "' waits for stage " + std::to_string(earlier) +
+                                  ", which was not added yet");
+    }
+  }
+
+  auto stage = std::make_unique<Stage>();
+  stage->name = std::move(name);
+  stage->plan = std::move(plan);
+  stage->body = std::move(body);
+  stage->waits = !after.empty();
+  stage->run_bundle = [&impl, id, &added = *stage](std::size_t bundle) {
+    for (const std::uint32_t task : added.order.tasks(bundle)) {
+      if (impl.recording) {
+        impl.run_recorded(id, task);
+      } else {
+        added.body(task);
+      }
+    }
+  };
+  if (impl.graph) {
+    stage->node.emplace(*impl.graph, [&impl, id](const oneapi::tbb::flow::continue_msg&) { impl.run_stage(id); });
+    for (const StageId earlier : after) oneapi::tbb::flow::make_edge(*impl.stages[earlier]->node, *stage->node);
+  }
+  impl.stages.push_back(std::move(stage));
+  return id;
+}
+
+void StageGraph::run() {
+  Impl& impl = *impl_;
+  for (const auto& stage : impl.stages) {
+    stage->costs.clear();
+    stage->records.clear();
+    stage->seconds = 0;
+  }
+  impl.failed.store(false, std::memory_order_relaxed);
+  impl.start = Clock::now();
+
+  if (impl.graph) {
+    impl.executor->execute([&impl] {
+      for (const auto& stage : impl.stages) {
+        if (!stage->waits) stage->node->try_put({});
+      }
+      impl.graph->wait_for_all();
+    });
+  } else {
+    // Stages wait only for earlier ones, so the order of adding is a topological one.
+    for (StageId id = 0; id != impl.stages.size(); ++id) impl.run_stage(id);
+  }
+
+  if (impl.recording) impl.collect_trace();
+  if (impl.failure) std::rethrow_exception(std::exchange(impl.failure, nullptr));
+}
+
+void StageGraph::record(bool on) { impl_->recording = on; }
+const TaskTrace& StageGraph::trace() const { return impl_->trace; }
+std::size_t StageGraph::size() const { return impl_->stages.size(); }
+const std::string& StageGraph::name(StageId stage) const { return impl_->stages.at(stage)->name; }
+double StageGraph::seconds(StageId stage) const { return impl_->stages.at(stage)->seconds; }
+
+}  // namespace sweepgrid
