@@ -37,14 +37,17 @@ void ArenaExecutor::for_each(std::size_t count, const std::function<void(std::si
   if (count == 0) return;
   arena_.execute([&] {
     if (count == 1) return body(0);
-    // Isolated: when the host cancels what it was doing, every body still runs.
+    // Isolated from the host twice over. What it cancels does not cut this short; and the thread that waits here for
+    // the last body takes up no task of the host's or of another engine's, which would hold up this one.
     oneapi::tbb::task_group_context context(oneapi::tbb::task_group_context::isolated);
-    oneapi::tbb::parallel_for(
-        oneapi::tbb::blocked_range<std::size_t>(0, count),
-        [&body](const oneapi::tbb::blocked_range<std::size_t>& range) {
-          for (std::size_t i = range.begin(); i != range.end(); ++i) body(i);
-        },
-        oneapi::tbb::simple_partitioner(), context);
+    oneapi::tbb::this_task_arena::isolate([&] {
+      oneapi::tbb::parallel_for(
+          oneapi::tbb::blocked_range<std::size_t>(0, count),
+          [&body](const oneapi::tbb::blocked_range<std::size_t>& range) {
+            for (std::size_t i = range.begin(); i != range.end(); ++i) body(i);
+          },
+          oneapi::tbb::simple_partitioner(), context);
+    });
   });
 }
 
