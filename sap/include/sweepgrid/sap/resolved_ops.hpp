@@ -1,0 +1,64 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <memory_resource>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <sweepgrid/sap/cell_op.hpp>
+#include <sweepgrid/sap/object_slots.hpp>
+
+namespace sweepgrid {
+
+/// Memory for one drain: a stack buffer that spills to the heap, so that cells keep no scratch of their own.
+class DrainArena {
+ public:
+  [[nodiscard]] std::pmr::memory_resource* resource() { return &resource_; }
+
+ private:
+  alignas(16) std::array<std::byte, 8192> buffer_;
+  std::pmr::monotonic_buffer_resource resource_{buffer_.data(), buffer_.size()};
+};
+
+/// The ops of one drain with the slots that they concern, by kind.
+template <class Scalar, int Dim>
+struct ResolvedOps {
+  struct Entry {
+    Slot slot;
+    const CellOp<Scalar, Dim>* op;
+  };
+  using Entries = std::pmr::vector<Entry>;
+
+  Entries inserts;
+  Entries updates;
+  Entries erases;
+
+  /// Looks every object up, then gives the new ones slots. Throws std::invalid_argument that names the object before any
+  /// slot is given when an insert names a present object, or an update or erase an absent one.
+  ResolvedOps(std::span<const CellOp<Scalar, Dim>> ops, ObjectSlots& slots, std::pmr::memory_resource* memory)
+      : inserts(memory), updates(memory), erases(memory) {
+    updates.reserve(ops.size());
+    for (const auto& op : ops) {
+      const Slot slot = slots.find(op.object);
+      if ((slot == ObjectSlots::kAbsent) != (op.kind == OpKind::kInsert)) refuse(op);
+      (op.kind == OpKind::kInsert ? inserts : op.kind == OpKind::kUpdate ? updates : erases).push_back({slot, &op});
+    }
+    for (Entry& entry : inserts) entry.slot = slots.acquire(entry.op->object);
+  }
+
+ private:
+  [[noreturn]] static void refuse(const CellOp<Scalar, Dim>& op) {
+    const bool insert = op.kind == OpKind::kInsert;
+    throw std::invalid_argument("sweepgrid: cell was told to " +
+                                std::string(insert                           ? "insert"
+                                            : op.kind == OpKind::kUpdate ? "update"
+                                                                         : "erase") +
+                                " object " + std::to_string(op.object) +
+                                (insert ? ", which it has already" : ", which it does not have"));
+  }
+};
+
+}  // namespace sweepgrid
