@@ -1,0 +1,29 @@
+#include "scenes/open_scene.hpp"
+
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "scenes/aabbs_source.hpp"
+#include "scenes/byte_stream.hpp"
+#include "scenes/generated_scene.hpp"
+#include "scenes/generator_params.hpp"
+#include "scenes/lammps_source.hpp"
+#include "scenes/scene_error.hpp"
+
+namespace sweepgrid {
+
+std::unique_ptr<SceneSource> open_scene(const std::string& spec, const SceneOptions& options) {
+  if (const auto params = parse_generator(spec)) return std::make_unique<GeneratedScene>(spec, *params);
+  auto content = std::make_unique<ByteStream>(spec);
+  const std::string_view start = content->peek(AabbsSource::kHeaderSize);
+  if (start.empty()) throw SceneError(fmt::format("{}: the file is empty", spec));
+  if (LammpsSource::recognises(start)) return std::make_unique<LammpsSource>(std::move(content), options.diameter);
+  // The name counts only where the content does not decide: to say what is wrong with a damaged .aabbs header.
+  if (AabbsSource::recognises(start) || spec.find(".aabbs") != std::string::npos) {
+    return std::make_unique<AabbsSource>(std::move(content));
+  }
+  throw SceneError(fmt::format("{}: neither a LAMMPS text dump (no 'ITEM:' at its start) nor .aabbs", spec));
+}
+
+}  // namespace sweepgrid

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "scenes/scene_source.hpp"
+
+namespace sweepgrid {
+
+struct SceneOptions {
+  /// Of the atoms of a LAMMPS dump without a radius column. Not negative.
+  std::optional<double> diameter;
+};
+
+/// Opens a recording, whose format and compression are told by its content, or a generator such as
+/// "uniform:n=1000,steps=10" (see generator_params.hpp). A file with the name of a generator is reached as ./NAME.
+/// Throws SceneError.
+[[nodiscard]] std::unique_ptr<SceneSource> open_scene(const std::string& spec, const SceneOptions& options = {});
+
+}  // namespace sweepgrid
