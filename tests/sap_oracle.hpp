@@ -1,0 +1,134 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <exception>
+#include <iterator>
+#include <map>
+#include <span>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <sweepgrid/sap/sweep_and_prune.hpp>
+
+/// The brute-force oracle of cells. Needs no test framework, so that small programs can use it too.
+namespace sweepgrid::oracle {
+
+/// An op with its box in world units: the oracle compares those, and so tests the conversion to ordered bits as well.
+template <class Scalar, int Dim>
+struct BoxOp {
+  ObjectId object = kNoObject;
+  OpKind kind = OpKind::kInsert;
+  Box<Scalar, Dim> box{};
+};
+
+template <class Scalar, int Dim>
+using Drain = std::vector<BoxOp<Scalar, Dim>>;
+
+/// What a cell was told, drain by drain.
+template <class Scalar, int Dim>
+using History = std::vector<Drain<Scalar, Dim>>;
+
+/// Knows what a cell should hold and which pairs overlap, by comparing every box with every other.
+template <class Scalar, int Dim>
+class CellOracle {
+ public:
+  using Cell = SweepAndPrune<Scalar, Dim>;
+  using Op = BoxOp<Scalar, Dim>;
+
+  /// Drains `ops` into `cell` and says what is wrong with the outcome; nothing if all is well. Compared: the sum of
+  /// each pair's deltas with the change of its state, both ways; residents and boxes; delta counter; validate().
+  std::string drain(Cell& cell, std::span<const Op> ops) {
+    std::vector<CellOp<Scalar, Dim>> cell_ops;
+    for (const Op& op : ops) cell_ops.push_back({op.object, op.kind, OrderedBox<Scalar, Dim>(op.box)});
+    const std::map<ObjectId, Box<Scalar, Dim>> boxes_before = boxes_;
+    const std::vector<PairKey> before = overlaps_;
+    apply(ops);
+
+    // A delta that is there already must stay: drain() appends.
+    const OverlapDelta sentinel{PairKey(0, 1), 12345};
+    std::vector<OverlapDelta> deltas{sentinel};
+    const std::uint64_t counted = counters_.deltas;
+    try {
+      cell.drain(cell_ops, deltas, counters_);
+      if (deltas.empty() || deltas[0].pair != sentinel.pair || deltas[0].change != sentinel.change) {
+        return "drain() did not append to the deltas";
+      }
+      deltas.erase(deltas.begin());
+      if (counters_.deltas - counted != deltas.size()) return "the delta counter is not the number of deltas";
+      for (const OverlapDelta& delta : deltas) {
+        for (const ObjectId object : {delta.pair.lower(), delta.pair.upper()}) {
+          if (boxes_.count(object) == 0 && boxes_before.count(object) == 0) {
+            return "a delta names object " + std::to_string(object) + ", which is not in the cell";
+          }
+        }
+      }
+      std::string wrong = compare_deltas(before, deltas);
+      if (wrong.empty()) wrong = compare_residents(cell);
+      if (wrong.empty()) cell.validate();
+      return wrong;
+    } catch (const std::exception& error) {
+      return std::string("exception: ") + error.what();
+    }
+  }
+
+  [[nodiscard]] const std::map<ObjectId, Box<Scalar, Dim>>& boxes() const { return boxes_; }
+  [[nodiscard]] const std::vector<PairKey>& overlaps() const { return overlaps_; }
+  [[nodiscard]] const SapCounters& counters() const { return counters_; }
+
+ private:
+  void apply(std::span<const Op> ops) {
+    for (const Op& op : ops) {
+      if (op.kind == OpKind::kErase) {
+        boxes_.erase(op.object);
+      } else {
+        boxes_.insert_or_assign(op.object, op.box);
+      }
+    }
+    overlaps_.clear();  // stays sorted, for the map is
+    for (auto a = boxes_.begin(); a != boxes_.end(); ++a) {
+      for (auto b = std::next(a); b != boxes_.end(); ++b) {
+        if (a->second.overlaps(b->second)) overlaps_.emplace_back(a->first, b->first);
+      }
+    }
+  }
+
+  [[nodiscard]] std::string compare_deltas(const std::vector<PairKey>& before,
+                                           const std::vector<OverlapDelta>& deltas) const {
+    std::map<PairKey, int> missing;  // change of state minus what the cell said
+    for (const PairKey pair : overlaps_) ++missing[pair];
+    for (const PairKey pair : before) --missing[pair];
+    for (const OverlapDelta& delta : deltas) missing[delta.pair] -= delta.change;
+    for (const auto& [pair, change] : missing) {
+      if (change == 0) continue;
+      const bool was = std::binary_search(before.begin(), before.end(), pair);
+      const bool is = std::binary_search(overlaps_.begin(), overlaps_.end(), pair);
+      std::ostringstream text;
+      text << "pair (" << pair.lower() << ", " << pair.upper() << "): overlap was " << was << ", is " << is
+           << ", but the deltas sum to " << int{is} - int{was} - change;
+      return text.str();
+    }
+    return {};
+  }
+
+  [[nodiscard]] std::string compare_residents(const Cell& cell) const {
+    std::vector<typename Cell::Resident> residents;
+    cell.append_residents(residents);
+    if (residents.size() != boxes_.size() || cell.size() != boxes_.size()) return "the number of residents is wrong";
+    std::map<ObjectId, OrderedBox<Scalar, Dim>> seen;
+    for (const auto& resident : residents) seen.emplace(resident.object, resident.box);
+    for (const auto& [object, box] : boxes_) {
+      const auto found = seen.find(object);
+      if (found == seen.end()) return "object " + std::to_string(object) + " is not among the residents";
+      if (found->second != OrderedBox<Scalar, Dim>(box)) return "the box of object " + std::to_string(object);
+    }
+    return {};
+  }
+
+  std::map<ObjectId, Box<Scalar, Dim>> boxes_;
+  std::vector<PairKey> overlaps_;
+  SapCounters counters_;
+};
+
+}  // namespace sweepgrid::oracle
