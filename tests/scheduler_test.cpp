@@ -54,7 +54,8 @@ class SchedulerThreads : public testing::TestWithParam<int> {
   std::shared_ptr<Executor> executor_ = make_executor(GetParam());
 };
 
-INSTANTIATE_TEST_SUITE_P(Threads, SchedulerThreads, testing::Values(1, 2, 3, 8));
+INSTANTIATE_TEST_SUITE_P(Threads, SchedulerThreads, testing::Values(1, 2, 3, 8),
+                         [](const auto& test) { return std::to_string(test.param); });
 
 TEST_P(SchedulerThreads, HaveTheConcurrencyThatWasAskedFor) { EXPECT_EQ(executor_->concurrency(), GetParam()); }
 
