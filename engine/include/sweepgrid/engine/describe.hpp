@@ -1,0 +1,41 @@
+#pragma once
+
+#include <sstream>
+#include <string>
+
+#include <sweepgrid/engine/handle.hpp>
+#include <sweepgrid/sap/box.hpp>
+
+namespace sweepgrid {
+
+/// How an error message names an object.
+template <class Key>
+[[nodiscard]] std::string describe(const Key& key) {
+  if constexpr (requires(std::ostream& out) { out << key; }) {
+    std::ostringstream out;
+    out << "object " << key;
+    return out.str();
+  } else {
+    return "object with a key that cannot be printed";
+  }
+}
+
+[[nodiscard]] inline std::string describe(Handle handle) {
+  return "object of handle " + std::to_string(handle.index) + " (generation " + std::to_string(handle.generation) + ")";
+}
+
+/// Why a box is not valid.
+template <class Scalar, int Dim>
+[[nodiscard]] std::string describe_fault(const Box<Scalar, Dim>& box) {
+  for (int axis = 0; axis < Dim; ++axis) {
+    if (box.min[axis] <= box.max[axis]) continue;
+    const bool nan = box.min[axis] != box.min[axis] || box.max[axis] != box.max[axis];
+    std::ostringstream out;
+    out << "its box has " << (nan ? "a NaN" : "min > max") << " on axis " << axis << " (min " << box.min[axis]
+        << ", max " << box.max[axis] << ")";
+    return out.str();
+  }
+  return "its box is valid";
+}
+
+}  // namespace sweepgrid

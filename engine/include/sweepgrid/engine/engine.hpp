@@ -1,0 +1,121 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <sweepgrid/engine/config.hpp>
+#include <sweepgrid/engine/engine_core.hpp>
+#include <sweepgrid/engine/event_order.hpp>
+#include <sweepgrid/engine/events.hpp>
+#include <sweepgrid/engine/handle.hpp>
+#include <sweepgrid/engine/key_order.hpp>
+#include <sweepgrid/engine/key_table.hpp>
+#include <sweepgrid/engine/stats.hpp>
+
+namespace sweepgrid {
+
+/// Broad-phase collision detection: objects with closed axis-aligned boxes in, begin and end events out.
+///
+/// `Scalar`: float, double or an integer type. `Dim`: 1 or more. `Key`: what the client calls its objects, any copyable
+/// and hashable type. `Order`: the strict weak order of keys in which events are sorted.
+/// float and double in 2 and 3 dimensions are compiled into the library; include <sweepgrid/engine/engine_core.inl.hpp>
+/// to use others.
+///
+/// Thread-safety: calls that queue (insert, update, erase) may run at once from many threads as long as no two of them
+/// concern the same object. All other calls want the engine for themselves.
+///
+/// Errors: bad input throws std::invalid_argument (or std::length_error at the limit of 2^32 - 1 objects) with a message
+/// that names the object, and leaves the engine as it was. A bulk call applies wholly or not at all.
+template <class Scalar, int Dim, class Key = std::uint64_t, class Hash = std::hash<Key>, class Order = KeyOrder<Key>>
+class Engine {
+ public:
+  using BoxType = Box<Scalar, Dim>;
+  using ConfigType = Config<Scalar, Dim>;
+
+  /// Throws std::invalid_argument that names the setting when one is out of its range.
+  explicit Engine(ConfigType config = {});
+
+  /// Queues a new object; it takes part from the next step() on. The handle is good at once.
+  /// Errors: `key` names a live object; `box` has a NaN or min > max. O(1).
+  Handle insert(const Key& key, const BoxType& box);
+  /// As above for keys[i], boxes[i]; handles are returned in order. Also an error: a key twice in `keys`.
+  std::vector<Handle> insert(std::span<const Key> keys, std::span<const BoxType> boxes);
+
+  /// Queues a new box. The last update before a step wins. An update to the box that the object has costs nothing more.
+  /// Errors: a stale or foreign handle, an unknown key, an erased object, a bad box. O(1).
+  void update(Handle object, const BoxType& box);
+  void update(const Key& key, const BoxType& box);
+  /// As above for objects[i], boxes[i], in order. The fastest way to move many.
+  void update(std::span<const Handle> objects, std::span<const BoxType> boxes);
+
+  /// Queues the end of an object: the next step() ends all its pairs. Its handle is stale and its key free at once.
+  /// An object inserted and erased before the same step leaves no trace. Errors: as update. O(1).
+  void erase(Handle object);
+  void erase(const Key& key);
+  /// Also an error: an object twice in `objects`.
+  void erase(std::span<const Handle> objects);
+
+  /// Applies all that was queued and returns the net change of the set of overlapping pairs since the last step: the
+  /// same events in the same order for any thread count, cell kind, grid and order of queueing calls.
+  /// The reference stays good, and its content unchanged, until the next step(). O(u + e) beside the cells' work.
+  const Events<Key>& step();
+
+  /// Every overlapping pair as of the latest step, sorted as events are. Built on demand: O(p log p).
+  [[nodiscard]] std::vector<Pair<Key>> pairs() const;
+
+  /// Live objects: inserted and not erased, queued ones included.
+  [[nodiscard]] std::size_t size() const;
+  [[nodiscard]] bool contains(const Key& key) const;
+  [[nodiscard]] std::optional<Handle> find(const Key& key) const;
+  /// The box given last, whether or not a step has seen it. Errors: as update.
+  [[nodiscard]] BoxType box(Handle object) const;
+  [[nodiscard]] const Key& key(Handle object) const;
+
+  /// Checks every named invariant of the engine and its cells against the boxes; throws InvariantError.
+  /// For tests and debugging: O(n log n) and more. Precondition: nothing queued since the latest step.
+  void validate() const;
+
+  /// Exact counters, times of the latest step's stages, memory. O(cells).
+  [[nodiscard]] Stats stats() const;
+
+  /// Records each task's stage, size, start and duration in later steps. Off at first.
+  void record_tasks(bool on);
+  /// The tasks of the latest step, if it was recorded.
+  [[nodiscard]] const TaskTrace& tasks() const;
+  [[nodiscard]] std::vector<std::string> stage_names() const;
+
+ private:
+  using Core = EngineCore<Scalar, Dim>;
+  using Sorter = EventOrder<Key, Order>;
+  enum List : std::size_t { kEnds, kBegins, kLists };
+
+  void add_order_stages();
+  void sort_shard(std::size_t list, std::size_t shard);
+  [[nodiscard]] std::vector<Pair<Key>>& list(std::size_t list) { return list == kEnds ? events_.ends : events_.begins; }
+  [[nodiscard]] Pair<Key> keys_of(PairKey pair) const {
+    return Sorter::pair(keys_.key(pair.lower()), keys_.key(pair.upper()));
+  }
+  [[nodiscard]] ObjectId live(Handle object, const char* call) const;
+  [[nodiscard]] ObjectId live(const Key& key, const char* call) const;
+  template <class Name>
+  static void require_valid(const BoxType& box, const Name& object, const char* call);
+  static void require_same_size(std::size_t objects, std::size_t boxes, const char* call);
+
+  Core core_;
+  KeyTable<Key, Hash> keys_;
+  Events<Key> events_;
+  std::array<Sorter, kLists> sorters_;
+  /// What the merge stage writes: ranges of one list, then of the other.
+  std::array<std::size_t, kLists> ranges_{};
+};
+
+}  // namespace sweepgrid
+
+#include <sweepgrid/engine/engine.inl.hpp>

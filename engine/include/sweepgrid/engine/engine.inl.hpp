@@ -1,0 +1,262 @@
+#pragma once
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+#include <sweepgrid/engine/describe.hpp>
+#include <sweepgrid/engine/engine.hpp>
+#include <sweepgrid/sap/invariant.hpp>
+
+namespace sweepgrid {
+
+#define SWEEPGRID_ENGINE_TEMPLATE template <class Scalar, int Dim, class Key, class Hash, class Order>
+#define SWEEPGRID_ENGINE Engine<Scalar, Dim, Key, Hash, Order>
+
+SWEEPGRID_ENGINE_TEMPLATE
+SWEEPGRID_ENGINE::Engine(ConfigType config) : core_(std::move(config)) { add_order_stages(); }
+
+SWEEPGRID_ENGINE_TEMPLATE
+void SWEEPGRID_ENGINE::add_order_stages() {
+  StageGraph& graph = core_.graph();
+  const auto order = graph.add(
+      "order", {core_.last_stage()},
+      [this](std::vector<std::uint64_t>& costs) {
+        for (Sorter& sorter : sorters_) sorter.reset(core_.shards());
+        for (std::size_t shard = 0; shard < core_.shards(); ++shard) costs.push_back(core_.ends(shard).size() + 1);
+        for (std::size_t shard = 0; shard < core_.shards(); ++shard) costs.push_back(core_.begins(shard).size() + 1);
+      },
+      [this](std::size_t task) { sort_shard(task / core_.shards(), task % core_.shards()); });
+  graph.add(
+      "merge", {order},
+      [this](std::vector<std::uint64_t>& costs) {
+        const auto workers = static_cast<std::size_t>(core_.executor().concurrency());
+        for (std::size_t l = 0; l < kLists; ++l) ranges_[l] = sorters_[l].cut(4 * workers, list(l));
+        costs.assign(ranges_[kEnds] + ranges_[kBegins], 1);
+      },
+      [this](std::size_t task) {
+        const std::size_t l = task < ranges_[kEnds] ? kEnds : kBegins;
+        sorters_[l].merge_range(l == kEnds ? task : task - ranges_[kEnds], list(l));
+      });
+}
+
+SWEEPGRID_ENGINE_TEMPLATE
+void SWEEPGRID_ENGINE::sort_shard(std::size_t list, std::size_t shard) {
+  auto& out = sorters_[list].shard(shard);
+  for (const PairKey pair : list == kEnds ? core_.ends(shard) : core_.begins(shard)) out.push_back(keys_of(pair));
+  sorters_[list].sort_shard(shard);
+}
+
+// ---- queueing
+
+SWEEPGRID_ENGINE_TEMPLATE
+Handle SWEEPGRID_ENGINE::insert(const Key& key, const BoxType& box) {
+  require_valid(box, key, "insert");
+  Handle handle;
+  const bool added = keys_.insert(key, [&] {
+    handle = core_.objects().insert(box);
+    return handle.index;
+  });
+  if (!added) throw std::invalid_argument("sweepgrid: insert of " + describe(key) + ": the key names a live object");
+  return handle;
+}
+
+SWEEPGRID_ENGINE_TEMPLATE
+std::vector<Handle> SWEEPGRID_ENGINE::insert(std::span<const Key> keys, std::span<const BoxType> boxes) {
+  require_same_size(keys.size(), boxes.size(), "insert");
+  for (std::size_t i = 0; i < keys.size(); ++i) require_valid(boxes[i], keys[i], "insert");
+  std::vector<Handle> handles;
+  handles.reserve(keys.size());
+  try {
+    for (std::size_t i = 0; i < keys.size(); ++i) handles.push_back(insert(keys[i], boxes[i]));
+  } catch (...) {
+    for (const Handle handle : handles) {
+      keys_.erase(handle.index);
+      core_.objects().cancel_insert(handle.index);
+    }
+    throw;
+  }
+  return handles;
+}
+
+SWEEPGRID_ENGINE_TEMPLATE
+void SWEEPGRID_ENGINE::update(Handle object, const BoxType& box) {
+  const ObjectId id = live(object, "update");
+  if (!box.valid()) require_valid(box, keys_.key(id), "update");
+  core_.objects().update(id, box);
+}
+
+SWEEPGRID_ENGINE_TEMPLATE
+void SWEEPGRID_ENGINE::update(const Key& key, const BoxType& box) {
+  const ObjectId id = live(key, "update");
+  require_valid(box, key, "update");
+  core_.objects().update(id, box);
+}
+
+SWEEPGRID_ENGINE_TEMPLATE
+void SWEEPGRID_ENGINE::update(std::span<const Handle> objects, std::span<const BoxType> boxes) {
+  require_same_size(objects.size(), boxes.size(), "update");
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    const ObjectId id = live(objects[i], "update");
+    if (!boxes[i].valid()) require_valid(boxes[i], keys_.key(id), "update");
+  }
+  for (std::size_t i = 0; i < objects.size(); ++i) core_.objects().update(objects[i].index, boxes[i]);
+}
+
+SWEEPGRID_ENGINE_TEMPLATE
+void SWEEPGRID_ENGINE::erase(Handle object) {
+  const ObjectId id = live(object, "erase");
+  keys_.erase(id);
+  core_.objects().erase(id);
+}
+
+SWEEPGRID_ENGINE_TEMPLATE
+void SWEEPGRID_ENGINE::erase(const Key& key) {
+  const ObjectId id = live(key, "erase");
+  keys_.erase(id);
+  core_.objects().erase(id);
+}
+
+SWEEPGRID_ENGINE_TEMPLATE
+void SWEEPGRID_ENGINE::erase(std::span<const Handle> objects) {
+  for (const Handle object : objects) static_cast<void>(live(object, "erase"));
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    if (core_.objects().good(objects[i])) {
+      core_.objects().erase(objects[i].index);
+      continue;
+    }
+    for (std::size_t done = 0; done < i; ++done) core_.objects().cancel_erase(objects[done].index);
+    throw std::invalid_argument("sweepgrid: erase of " + describe(keys_.key(objects[i].index)) +
+                                ": the call names it twice");
+  }
+  for (const Handle object : objects) keys_.erase(object.index);
+}
+
+// ---- the step and what it leaves
+
+SWEEPGRID_ENGINE_TEMPLATE
+const Events<Key>& SWEEPGRID_ENGINE::step() {
+  if (!core_.objects().anything_queued()) {
+    events_.ends.clear();
+    events_.begins.clear();
+  }
+  core_.step();
+  return events_;
+}
+
+SWEEPGRID_ENGINE_TEMPLATE
+std::vector<Pair<Key>> SWEEPGRID_ENGINE::pairs() const {
+  std::vector<Pair<Key>> pairs;
+  for (const PairKey pair : core_.pairs()) pairs.push_back(keys_of(pair));
+  std::sort(pairs.begin(), pairs.end(), Sorter::less);
+  return pairs;
+}
+
+SWEEPGRID_ENGINE_TEMPLATE
+std::size_t SWEEPGRID_ENGINE::size() const { return core_.objects().size(); }
+
+SWEEPGRID_ENGINE_TEMPLATE
+bool SWEEPGRID_ENGINE::contains(const Key& key) const { return keys_.find(key) != kNoObject; }
+
+SWEEPGRID_ENGINE_TEMPLATE
+std::optional<Handle> SWEEPGRID_ENGINE::find(const Key& key) const {
+  const ObjectId id = keys_.find(key);
+  return id == kNoObject ? std::nullopt : std::optional(core_.objects().handle(id));
+}
+
+SWEEPGRID_ENGINE_TEMPLATE
+auto SWEEPGRID_ENGINE::box(Handle object) const -> BoxType { return core_.objects().record(live(object, "box")).box; }
+
+SWEEPGRID_ENGINE_TEMPLATE
+const Key& SWEEPGRID_ENGINE::key(Handle object) const { return keys_.key(live(object, "key")); }
+
+SWEEPGRID_ENGINE_TEMPLATE
+void SWEEPGRID_ENGINE::validate() const {
+  core_.validate();
+  for (const auto* events : {&events_.ends, &events_.begins}) {
+    const auto unordered = std::adjacent_find(events->begin(), events->end(),
+                                              [](const auto& a, const auto& b) { return !Sorter::less(a, b); });
+    require_invariant(unordered == events->end(), "E3", [&] {
+      return "events are not sorted and unique at (" + describe(unordered->first) + ", " + describe(unordered->second) +
+             ")";
+    });
+  }
+  // E2 and the rest of E3: a pair that has just begun overlaps now; one that has just ended does not, unless new
+  // objects took over its keys.
+  const std::vector<Pair<Key>> now = pairs();
+  const auto overlaps = [&](const Pair<Key>& pair) {
+    return std::binary_search(now.begin(), now.end(), pair, Sorter::less);
+  };
+  for (const auto& pair : events_.begins) {
+    require_invariant(overlaps(pair), "E2", [&] {
+      return "a begin without an overlap: (" + describe(pair.first) + ", " + describe(pair.second) + ")";
+    });
+  }
+  for (const auto& pair : events_.ends) {
+    const bool begun = std::binary_search(events_.begins.begin(), events_.begins.end(), pair, Sorter::less);
+    require_invariant(begun == overlaps(pair), "E3", [&] {
+      return "an end of a pair that overlaps: (" + describe(pair.first) + ", " + describe(pair.second) + ")";
+    });
+  }
+}
+
+SWEEPGRID_ENGINE_TEMPLATE
+Stats SWEEPGRID_ENGINE::stats() const {
+  Stats stats = core_.stats();
+  stats.bytes_objects += keys_.bytes();
+  return stats;
+}
+
+SWEEPGRID_ENGINE_TEMPLATE
+void SWEEPGRID_ENGINE::record_tasks(bool on) { core_.graph().record(on); }
+
+SWEEPGRID_ENGINE_TEMPLATE
+const TaskTrace& SWEEPGRID_ENGINE::tasks() const { return core_.graph().trace(); }
+
+SWEEPGRID_ENGINE_TEMPLATE
+std::vector<std::string> SWEEPGRID_ENGINE::stage_names() const {
+  std::vector<std::string> names;
+  for (StageGraph::StageId stage = 0; stage < core_.graph().size(); ++stage) names.push_back(core_.graph().name(stage));
+  return names;
+}
+
+// ---- errors
+
+SWEEPGRID_ENGINE_TEMPLATE
+ObjectId SWEEPGRID_ENGINE::live(Handle object, const char* call) const {
+  if (!core_.objects().good(object)) {
+    throw std::invalid_argument(std::string("sweepgrid: ") + call + " of " + describe(object) +
+                                ": the handle is stale or of another engine");
+  }
+  return object.index;
+}
+
+SWEEPGRID_ENGINE_TEMPLATE
+ObjectId SWEEPGRID_ENGINE::live(const Key& key, const char* call) const {
+  const ObjectId id = keys_.find(key);
+  if (id == kNoObject) {
+    throw std::invalid_argument(std::string("sweepgrid: ") + call + " of " + describe(key) + ": no live object has the key");
+  }
+  return id;
+}
+
+SWEEPGRID_ENGINE_TEMPLATE
+template <class Name>
+void SWEEPGRID_ENGINE::require_valid(const BoxType& box, const Name& object, const char* call) {
+  if (!box.valid()) {
+    throw std::invalid_argument(std::string("sweepgrid: ") + call + " of " + describe(object) + ": " + describe_fault(box));
+  }
+}
+
+SWEEPGRID_ENGINE_TEMPLATE
+void SWEEPGRID_ENGINE::require_same_size(std::size_t objects, std::size_t boxes, const char* call) {
+  if (objects != boxes) {
+    throw std::invalid_argument(std::string("sweepgrid: ") + call + " of " + std::to_string(objects) + " objects with " +
+                                std::to_string(boxes) + " boxes");
+  }
+}
+
+#undef SWEEPGRID_ENGINE_TEMPLATE
+#undef SWEEPGRID_ENGINE
+
+}  // namespace sweepgrid
