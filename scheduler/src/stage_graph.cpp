@@ -107,7 +107,7 @@ StageGraph::StageGraph(std::shared_ptr<Executor> executor) {
 
 StageGraph::~StageGraph() = default;
 
-StageGraph::StageId StageGraph::add(std::string name, std::vector<StageId> after, Plan plan, Body body) {
+StageGraph::StageId StageGraph::add(std::string name, const std::vector<StageId>& after, Plan plan, Body body) {
   Impl& impl = *impl_;
   const auto id = static_cast<StageId>(impl.stages.size());
   for (const StageId earlier : after) {

@@ -31,7 +31,7 @@ class StageGraph {
 
   /// Adds a stage that starts when every stage in `after` has ended. Throws std::invalid_argument when `after` names a
   /// stage that was not added yet, so no cycle can be built.
-  StageId add(std::string name, std::vector<StageId> after, Plan plan, Body body);
+  StageId add(std::string name, const std::vector<StageId>& after, Plan plan, Body body);
 
   /// Runs every stage once and returns when all have ended. The heaviest tasks of a stage start first; idle workers
   /// steal. The first exception of a plan or body is rethrown after running tasks ended; stages that had not

@@ -1,0 +1,65 @@
+# Sourced by the scripts in tools/: set-up of a fresh Debian 12, and the frame in which a script runs its stages.
+# Sourcing it goes to the root of the source tree.
+
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/../.."
+
+readonly script_name=tools/${0##*/}
+advice="read the lines above."
+trap 'end_of_script $?' EXIT
+
+# What is printed last when the script failed: one sentence that says what to do. A script may define before_end to
+# say more before it.
+end_of_script() {
+  local status=$1
+  if declare -F before_end >/dev/null; then before_end; fi
+  if ((status != 0)); then echo "${script_name}: failed in '${stage:-start}': ${advice}" >&2; fi
+}
+
+# stage <name> <advice>: what runs from here on, and what to do when it fails.
+stage() {
+  stage=$1
+  advice=$2
+  printf '\n== %s (%ds)\n' "$stage" "$SECONDS"
+}
+
+readonly build_packages=(
+  g++ cmake ninja-build libtbb-dev libcli11-dev nlohmann-json3-dev libfmt-dev
+  libboost-iostreams-dev zlib1g-dev liblzma-dev libzstd-dev)
+readonly test_packages=(libgtest-dev libeigen3-dev librapidcheck-dev)
+
+# install_packages <package>...: asks apt for those that are missing, and for nothing when none is.
+install_packages() {
+  stage "set-up" "install the packages that are named above by hand, then run it again."
+  local package missing=()
+  if ! command -v apt-get >/dev/null; then
+    echo "no apt-get here: taking it that what these packages hold is installed: $*"
+    return
+  fi
+  for package in "$@"; do
+    if [[ $(dpkg-query --show --showformat='${db:Status-Status}' "$package" 2>/dev/null) != installed ]]; then
+      missing+=("$package")
+    fi
+  done
+  if ((${#missing[@]} == 0)); then
+    echo "all packages are installed"
+    return
+  fi
+  echo "installing ${missing[*]}"
+  local as_root=()
+  if ((EUID != 0)); then
+    advice="become root or install sudo, then run it again."
+    command -v sudo >/dev/null
+    as_root=(sudo)
+    advice="install the packages that are named above by hand, then run it again."
+  fi
+  "${as_root[@]}" apt-get update -qq
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -qq -y --no-install-recommends "${missing[@]}" \
+    >/dev/null
+}
+
+# build <preset> [<target>]: configures and builds.
+build() {
+  cmake --preset "$1" --log-level=WARNING
+  cmake --build --preset "$1" -j "$(nproc)" ${2:+--target "$2"}
+}
