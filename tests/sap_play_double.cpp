@@ -1,0 +1,8 @@
+#include "sap_play.inl.hpp"
+
+namespace sweepgrid::oracle {
+
+template std::string play_cell<double, 2>(const CellOptions&, const Regime&, std::uint64_t);
+template std::string play_cell<double, 3>(const CellOptions&, const Regime&, std::uint64_t);
+
+}  // namespace sweepgrid::oracle
