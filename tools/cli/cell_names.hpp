@@ -1,0 +1,25 @@
+#pragma once
+
+#include <map>
+#include <string>
+
+#include <sweepgrid/sap/cell_kind.hpp>
+
+namespace sweepgrid {
+
+/// The kinds of cell as the command line calls them.
+[[nodiscard]] inline std::map<std::string, CellKind> cell_kinds_by_name() {
+  return {{"batch", CellKind::kBatch},
+          {"segmented", CellKind::kSegmented},
+          {"classic", CellKind::kClassic},
+          {"plane", CellKind::kPlane}};
+}
+
+[[nodiscard]] inline std::string cell_name(CellKind kind) {
+  for (const auto& [name, candidate] : cell_kinds_by_name()) {
+    if (candidate == kind) return name;
+  }
+  return "?";
+}
+
+}  // namespace sweepgrid

@@ -1,0 +1,153 @@
+#include "cli/scene_run.hpp"
+
+#include <chrono>
+#include <limits>
+#include <span>
+#include <unordered_map>
+
+#include <sweepgrid/engine/engine.hpp>
+
+#include "cli/machine_info.hpp"
+#include "cli/progress_bar.hpp"
+#include "cli/rounded_step.hpp"
+
+namespace sweepgrid {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::uint64_t kStepsPerPairsCheck = 10;
+
+double milliseconds(Clock::duration duration) { return std::chrono::duration<double, std::milli>(duration).count(); }
+
+template <class Scalar, int Dim>
+Config<Scalar, Dim> config_of(const RunOptions& options, const std::shared_ptr<Executor>& executor) {
+  Config<Scalar, Dim> config;
+  if (options.cell) config.cell.kind = *options.cell;
+  if (options.segment_capacity) config.cell.segment_capacity = *options.segment_capacity;
+  config.cell_size = options.cell_size;
+  config.executor = executor;
+  return config;
+}
+
+/// One engine on its way through one scene.
+template <class Scalar, int Dim>
+class SceneRun {
+ public:
+  SceneRun(const RunOptions& options, const std::shared_ptr<Executor>& executor, EventsFile* events)
+      : engine_(config_of<Scalar, Dim>(options, executor)), events_file_(events) {
+    if (options.verify) verifier_.emplace();
+  }
+
+  SceneResult run(SceneSource& source, std::uint64_t step_limit) {
+    result_.scene = source.info();
+    ProgressBar progress(result_.scene.name, result_.scene.steps);
+    SceneStep ops;
+    bool right = source.next(ops) && do_step(ops);
+    result_.objects_first = engine_.size();
+    while (right && result_.steps < step_limit && source.next(ops)) {
+      ++result_.steps;
+      right = do_step(ops);
+      progress.show(result_.steps);
+    }
+    if (right && verifier_) verifier_->check_pairs(engine_.pairs());
+    result_.objects_last = engine_.size();
+    result_.stats = engine_.stats();
+    result_.peak_bytes = peak_memory();
+    if (verifier_) result_.verification = verifier_->result();
+    return std::move(result_);
+  }
+
+ private:
+  // False when the verifier found an error.
+  bool do_step(SceneStep& ops) {
+    prepare(ops);
+    const Clock::time_point begin = Clock::now();
+    engine_.erase(std::span<const Handle>(erased_));
+    std::vector<Handle> inserted =
+        engine_.insert(std::span<const SceneKey>(ops.inserted), std::span<const Box<Scalar, Dim>>(inserted_boxes_));
+    engine_.update(std::span<const Handle>(updated_), std::span<const Box<Scalar, Dim>>(updated_boxes_));
+    const Clock::time_point queued = Clock::now();
+    const Events<SceneKey>& events = engine_.step();
+    const Clock::time_point end = Clock::now();
+    for (std::size_t i = 0; i < inserted.size(); ++i) handles_[ops.inserted[i]] = inserted[i];
+    count(ops, events, milliseconds(end - begin), milliseconds(end - queued));
+    if (events_file_ != nullptr) events_file_->write(result_.steps, events);
+    return verify(ops, events);
+  }
+
+  // What a client has at hand: its objects' handles, and its boxes in its own precision.
+  void prepare(SceneStep& ops) {
+    erased_.clear();
+    updated_.clear();
+    for (const SceneKey key : ops.erased) {
+      const auto handle = handles_.find(key);
+      erased_.push_back(handle->second);
+      handles_.erase(handle);
+    }
+    for (const SceneKey key : ops.updated) updated_.push_back(handles_.find(key)->second);
+    round_boxes(ops.inserted_boxes, inserted_boxes_);
+    round_boxes(ops.updated_boxes, updated_boxes_);
+  }
+
+  void count(const SceneStep& ops, const Events<SceneKey>& events, double whole_ms, double step_ms) {
+    pairs_ += events.begins.size();
+    pairs_ -= events.ends.size();
+    result_.pairs_last = pairs_;
+    if (result_.steps == 0) {
+      result_.start_ms = whole_ms;
+      result_.pairs_first = pairs_;
+      return;
+    }
+    result_.moved += ops.updated.size();
+    result_.inserts += ops.inserted.size();
+    result_.erases += ops.erased.size();
+    result_.begins += events.begins.size();
+    result_.ends += events.ends.size();
+    result_.whole_times.samples.push_back(whole_ms);
+    result_.step_times.samples.push_back(step_ms);
+    const std::vector<StageTime> stages = engine_.stats().stages;
+    result_.stage_totals.resize(stages.size());
+    for (std::size_t i = 0; i < stages.size(); ++i) {
+      result_.stage_totals[i].stage = stages[i].stage;
+      result_.stage_totals[i].seconds += stages[i].seconds;
+    }
+  }
+
+  bool verify(const SceneStep& ops, const Events<SceneKey>& events) {
+    if (!verifier_) return true;
+    if (!verifier_->check_step(ops, events)) return false;
+    if (result_.steps % kStepsPerPairsCheck != 0) return true;
+    return verifier_->check_pairs(engine_.pairs());
+  }
+
+  Engine<Scalar, Dim, SceneKey> engine_;
+  EventsFile* events_file_;
+  std::optional<Verifier> verifier_;
+  std::unordered_map<SceneKey, Handle> handles_;
+  std::vector<Handle> erased_;
+  std::vector<Handle> updated_;
+  std::vector<Box<Scalar, Dim>> inserted_boxes_;
+  std::vector<Box<Scalar, Dim>> updated_boxes_;
+  std::size_t pairs_ = 0;
+  SceneResult result_;
+};
+
+template <class Scalar>
+SceneResult run_with(SceneSource& source, const RunOptions& options, const std::shared_ptr<Executor>& executor,
+                     EventsFile* events) {
+  const std::uint64_t limit = options.steps.value_or(std::numeric_limits<std::uint64_t>::max());
+  if (source.info().dim == 2) return SceneRun<Scalar, 2>(options, executor, events).run(source, limit);
+  return SceneRun<Scalar, 3>(options, executor, events).run(source, limit);
+}
+
+}  // namespace
+
+SceneResult run_scene(SceneSource& source, const RunOptions& options, const std::shared_ptr<Executor>& executor,
+                      EventsFile* events) {
+  reset_peak_memory();
+  if (options.scalar == ScalarKind::kDouble) return run_with<double>(source, options, executor, events);
+  return run_with<float>(source, options, executor, events);
+}
+
+}  // namespace sweepgrid

@@ -1,0 +1,118 @@
+#include "cli/verifier.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <unordered_set>
+
+#include <fmt/format.h>
+
+namespace sweepgrid {
+namespace {
+
+const ScenePairOrder kBefore;
+
+std::string box_text(const OverlapOracle& oracle, SceneKey key) {
+  if (!oracle.contains(key)) return fmt::format("{} is not there", key);
+  const SceneBox& box = oracle.box(key);
+  return fmt::format("{} [{}] to [{}]", key, fmt::join(box.min, ", "), fmt::join(box.max, ", "));
+}
+
+std::vector<ScenePair> without(const std::vector<ScenePair>& all, const std::vector<ScenePair>& some) {
+  std::vector<ScenePair> rest;
+  std::set_difference(all.begin(), all.end(), some.begin(), some.end(), std::back_inserter(rest), kBefore);
+  return rest;
+}
+
+std::vector<ScenePair> sorted(std::vector<ScenePair> pairs) {
+  std::sort(pairs.begin(), pairs.end(), kBefore);
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  return pairs;
+}
+
+}  // namespace
+
+bool Verifier::check_step(const SceneStep& ops, const Events<SceneKey>& events) {
+  if (started_) ++step_;
+  started_ = true;
+  apply_ops(ops);
+  expected_ = oracle_.pairs();
+  check_list("ends", events.ends);
+  check_list("begins", events.begins);
+  apply_events(ops, events);
+  compare_with_oracle("the events", current_);
+  if (!result_.ok()) return false;
+  result_.steps = step_;
+  result_.pairs += expected_.size();
+  return true;
+}
+
+bool Verifier::check_pairs(const std::vector<ScenePair>& pairs) {
+  check_list("pairs()", pairs);
+  compare_with_oracle("pairs()", sorted(pairs));
+  return result_.ok();
+}
+
+void Verifier::apply_ops(const SceneStep& ops) {
+  for (const SceneKey key : ops.erased) oracle_.erase(key);
+  for (std::size_t i = 0; i < ops.inserted.size(); ++i) oracle_.insert(ops.inserted[i], ops.inserted_boxes[i]);
+  for (std::size_t i = 0; i < ops.updated.size(); ++i) oracle_.update(ops.updated[i], ops.updated_boxes[i]);
+}
+
+void Verifier::check_list(std::string_view name, const std::vector<ScenePair>& list) {
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    if (list[i].first >= list[i].second) {
+      note(result_.misordered, list[i], fmt::format("in {}: its first key is not the lower one", name));
+    }
+    if (i == 0 || kBefore(list[i - 1], list[i])) continue;
+    if (list[i - 1] == list[i]) {
+      note(result_.duplicate, list[i], fmt::format("twice in {}", name));
+    } else {
+      note(result_.misordered, list[i],
+           fmt::format("in {} behind ({}, {})", name, list[i - 1].first, list[i - 1].second));
+    }
+  }
+}
+
+void Verifier::apply_events(const SceneStep& ops, const Events<SceneKey>& events) {
+  const std::vector<ScenePair> ends = sorted(events.ends);
+  const std::vector<ScenePair> begins = sorted(events.begins);
+  for (const ScenePair& pair : without(ends, current_)) {
+    note(result_.spurious, pair, "an end, but the pair was not there");
+  }
+  // Only an object that was erased and inserted again ends and begins the same pair in one step.
+  const std::unordered_set<SceneKey> erased(ops.erased.begin(), ops.erased.end());
+  for (const ScenePair& pair : begins) {
+    if (!std::binary_search(ends.begin(), ends.end(), pair, kBefore)) continue;
+    if (erased.contains(pair.first) || erased.contains(pair.second)) continue;
+    note(result_.spurious, pair, "an end and a begin in one step");
+  }
+  const std::vector<ScenePair> left = without(current_, ends);
+  std::vector<ScenePair> next;
+  std::set_union(left.begin(), left.end(), begins.begin(), begins.end(), std::back_inserter(next), kBefore);
+  if (next.size() != left.size() + begins.size()) {
+    for (const ScenePair& pair : begins) {
+      if (!std::binary_search(left.begin(), left.end(), pair, kBefore)) continue;
+      note(result_.spurious, pair, "a begin, but the pair was there");
+    }
+  }
+  current_ = std::move(next);
+}
+
+void Verifier::compare_with_oracle(std::string_view source, const std::vector<ScenePair>& found) {
+  if (found == expected_) return;
+  for (const ScenePair& pair : without(expected_, found)) {
+    note(result_.missing, pair, fmt::format("overlaps, but not according to {}", source));
+  }
+  for (const ScenePair& pair : without(found, expected_)) {
+    note(result_.extra, pair, fmt::format("does not overlap, but does according to {}", source));
+  }
+}
+
+void Verifier::note(std::uint64_t& counter, const ScenePair& pair, std::string_view what) {
+  ++counter;
+  if (!result_.ok()) return;
+  result_.first_error = fmt::format("step {}: pair ({}, {}): {}; boxes: {}; {}", step_, pair.first, pair.second, what,
+                                    box_text(oracle_, pair.first), box_text(oracle_, pair.second));
+}
+
+}  // namespace sweepgrid
