@@ -42,7 +42,8 @@ CLI::Validator or_auto(const CLI::Validator& validator, const std::string& descr
 template <class Options>
 void add_scene_options(CLI::App& command, Options& options) {
   command.add_option("SCENE", options.scenes, kScenesHelp)->required();
-  command.add_option("--steps", options.steps, "Stop after so many steps, the start not counted");
+  command.add_option("--steps", options.steps, "Stop after so many steps, the start not counted")
+      ->check(CLI::NonNegativeNumber);
   command.add_option("--diameter", options.scene.diameter, "Of the atoms of a dump without a column for it")
       ->check(CLI::NonNegativeNumber);
   const std::map<std::string, ScalarKind> scalars = {{"float", ScalarKind::kFloat}, {"double", ScalarKind::kDouble}};

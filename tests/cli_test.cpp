@@ -1,0 +1,325 @@
+// The sweepgrid program: that its verifier notices every kind of wrong event, and what it answers, writes and exits
+// with.
+
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "cli/output_file.hpp"
+#include "cli/overlap_oracle.hpp"
+#include "cli/step_times.hpp"
+#include "cli/verifier.hpp"
+#include "scenes_data/scene_files.hpp"
+
+namespace sweepgrid {
+namespace {
+
+using scene_files::Directory;
+using scene_files::read_file;
+
+using SceneEvents = Events<SceneKey>;
+
+SceneBox cube(double x, double radius = 0.5) {
+  return SceneBox({x - radius, -radius, -radius}, {x + radius, radius, radius});
+}
+
+SceneStep inserts(const std::vector<std::pair<SceneKey, SceneBox>>& objects) {
+  SceneStep step;
+  for (const auto& [key, box] : objects) {
+    step.inserted.push_back(key);
+    step.inserted_boxes.push_back(box);
+  }
+  return step;
+}
+
+// Overlapping: (1, 2), (2, 3) and (8, 9).
+SceneStep five_objects() {
+  return inserts({{1, cube(0)}, {2, cube(0.75)}, {3, cube(1.5)}, {8, cube(9)}, {9, cube(10)}});
+}
+const std::vector<ScenePair> kFivePairs = {{1, 2}, {2, 3}, {8, 9}};
+
+// What a verifier finds that got five_objects() with `events`.
+Verification verify_start(const SceneEvents& events) {
+  Verifier verifier;
+  const bool right = verifier.check_step(five_objects(), events);
+  EXPECT_EQ(right, verifier.result().ok());
+  return verifier.result();
+}
+
+// What it finds when object 9 is erased after a right start, with `events`.
+Verification verify_erase(const SceneEvents& events) {
+  Verifier verifier;
+  EXPECT_TRUE(verifier.check_step(five_objects(), {{}, kFivePairs}));
+  SceneStep step;
+  step.erased = {9};
+  const bool right = verifier.check_step(step, events);
+  EXPECT_EQ(right, verifier.result().ok());
+  return verifier.result();
+}
+
+TEST(OverlapOracle, FindsWhatComparingAllPairsFinds) {
+  std::mt19937 random(5);
+  for (int round = 0; round < 20; ++round) {
+    OverlapOracle oracle;
+    std::vector<SceneBox> boxes;
+    for (SceneKey key = 0; key < 60; ++key) {
+      SceneBox box;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        // Whole numbers, so that many boxes only touch.
+        box.min[axis] = static_cast<double>(random() % 12);
+        box.max[axis] = box.min[axis] + static_cast<double>(random() % 4);
+      }
+      boxes.push_back(box);
+      oracle.insert(key, box);
+    }
+    std::vector<ScenePair> expected;
+    for (SceneKey a = 0; a < boxes.size(); ++a) {
+      for (SceneKey b = a + 1; b < boxes.size(); ++b) {
+        if (boxes[a].overlaps(boxes[b])) expected.push_back({a, b});
+      }
+    }
+    EXPECT_EQ(oracle.pairs(), expected);
+  }
+}
+
+TEST(Verifier, FindsNothingWrongWithRightEvents) {
+  const Verification start = verify_start({{}, kFivePairs});
+  EXPECT_TRUE(start.ok());
+  EXPECT_EQ(start.pairs, 3U);
+  const Verification erase = verify_erase({{{8, 9}}, {}});
+  EXPECT_TRUE(erase.ok()) << erase.first_error;
+  EXPECT_EQ(erase.steps, 1U);
+  EXPECT_EQ(erase.pairs, 5U);
+}
+
+TEST(Verifier, NoticesAMissingBegin) {
+  const Verification found = verify_start({{}, {{1, 2}, {8, 9}}});
+  EXPECT_EQ(found.missing, 1U);
+  EXPECT_EQ(found.first_error,
+            "step 0: pair (2, 3): overlaps, but not according to the events; boxes: "
+            "2 [0.25, -0.5, -0.5] to [1.25, 0.5, 0.5]; 3 [1, -0.5, -0.5] to [2, 0.5, 0.5]");
+}
+
+TEST(Verifier, NoticesAnExtraBegin) {
+  const Verification found = verify_start({{}, {{1, 2}, {1, 3}, {2, 3}, {8, 9}}});
+  EXPECT_EQ(found.extra, 1U);
+  EXPECT_TRUE(found.first_error.starts_with("step 0: pair (1, 3): does not overlap, but does according to"));
+}
+
+TEST(Verifier, NoticesAMissingEnd) {
+  const Verification found = verify_erase({});
+  EXPECT_EQ(found.extra, 1U);
+  EXPECT_EQ(found.first_error,
+            "step 1: pair (8, 9): does not overlap, but does according to the events; boxes: "
+            "8 [8.5, -0.5, -0.5] to [9.5, 0.5, 0.5]; 9 is not there");
+}
+
+TEST(Verifier, NoticesDuplicates) {
+  EXPECT_EQ(verify_start({{}, {{1, 2}, {2, 3}, {2, 3}, {8, 9}}}).duplicate, 1U);
+  EXPECT_EQ(verify_erase({{{8, 9}, {8, 9}}, {}}).duplicate, 1U);
+}
+
+TEST(Verifier, NoticesSpuriousEventsThatLeadToTheRightPairs) {
+  EXPECT_EQ(verify_start({{{1, 3}}, kFivePairs}).spurious, 1U);        // ends what was not there
+  EXPECT_EQ(verify_erase({{{8, 9}}, {{1, 2}}}).spurious, 1U);          // begins what was there
+  EXPECT_EQ(verify_erase({{{1, 2}, {8, 9}}, {{1, 2}}}).spurious, 1U);  // ends and begins what went on
+}
+
+TEST(Verifier, AllowsAnEndAndABeginOfAnObjectThatWasReplaced) {
+  Verifier verifier;
+  EXPECT_TRUE(verifier.check_step(five_objects(), {{}, kFivePairs}));
+  SceneStep step = inserts({{9, cube(9.5)}});
+  step.erased = {9};
+  EXPECT_TRUE(verifier.check_step(step, {{{8, 9}}, {{8, 9}}})) << verifier.result().first_error;
+}
+
+TEST(Verifier, NoticesWrongOrder) {
+  EXPECT_EQ(verify_start({{}, {{2, 3}, {1, 2}, {8, 9}}}).misordered, 1U);
+  EXPECT_FALSE(verify_start({{}, {{1, 2}, {3, 2}, {8, 9}}}).ok());
+}
+
+TEST(Verifier, NoticesAWrongListOfAllPairs) {
+  const std::vector<ScenePair> wrong_lists[] = {
+      {{1, 2}, {2, 3}}, {{1, 2}, {1, 3}, {2, 3}, {8, 9}}, {{1, 2}, {2, 3}, {8, 9}, {8, 9}}, {{2, 3}, {1, 2}, {8, 9}}};
+  for (const auto& wrong : wrong_lists) {
+    Verifier verifier;
+    verifier.check_step(five_objects(), {{}, kFivePairs});
+    EXPECT_TRUE(verifier.check_pairs(kFivePairs));
+    EXPECT_FALSE(verifier.check_pairs(wrong));
+  }
+}
+
+TEST(StepTimes, QuantilesAreSamples) {
+  StepTimes times;
+  EXPECT_EQ(times.median(), 0);
+  for (int i = 200; i > 0; --i) times.samples.push_back(i);
+  EXPECT_EQ(times.median(), 100);
+  EXPECT_EQ(times.p99(), 198);
+  EXPECT_EQ(times.quantile(1), 200);
+}
+
+TEST(OutputFile, IsThereAsAWholeOrNotAtAll) {
+  const Directory directory;
+  const std::string path = directory.write("out", "old");
+  {
+    OutputFile file(path);
+    file.write("new");
+    EXPECT_EQ(read_file(path), "old");
+  }
+  EXPECT_EQ(read_file(path), "old");
+  OutputFile file(path);
+  file.write("new");
+  file.commit();
+  EXPECT_EQ(read_file(path), "new");
+  const auto files = std::filesystem::directory_iterator(directory.path(""));
+  EXPECT_EQ(std::distance(begin(files), end(files)), 1);
+}
+
+TEST(OutputFile, TellsThatTheDeviceIsFullAndLeavesItInPlace) {
+  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP();
+  OutputFile file("/dev/full");
+  EXPECT_THROW(
+      {
+        file.write("text");
+        file.commit();
+      },
+      std::system_error);
+  EXPECT_TRUE(std::filesystem::is_character_file("/dev/full"));
+}
+
+/// Runs the program in a directory of its own.
+class Program : public testing::Test {
+ protected:
+  struct Result {
+    int status = -1;
+    std::string out;
+    std::string err;
+  };
+
+  Result run(const std::string& arguments) const {
+    const std::string command = std::string("'") + SWEEPGRID_PROGRAM + "' " + arguments + " >'" +
+                                directory_.path("stdout") + "' 2>'" + directory_.path("stderr") + "'";
+    const int status = std::system(command.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_file(directory_.path("stdout")),
+            read_file(directory_.path("stderr"))};
+  }
+
+  // Two unit cubes that meet, part and meet, beside one that comes and goes.
+  [[nodiscard]] std::string small_scene() const {
+    return "'" +
+           directory_.write("small.dump", scene_files::as_dump({{{4, cube(0)}, {7, cube(0.5)}},
+                                                                {{4, cube(0)}, {5, cube(0.25)}, {7, cube(2)}},
+                                                                {{4, cube(0)}, {7, cube(1)}}})) +
+           "'";
+  }
+
+  Directory directory_;
+};
+
+TEST_F(Program, ExitsWithTwoAndTheReasonWhenItCannotDoWhatItIsAskedFor) {
+  const std::string scene = small_scene();
+  const std::string cut = "'" + directory_.write("cut.aabbs", scene_files::aabbs_header(3, 3) + "x") + "'";
+  const std::pair<std::string, std::string> cases[] = {
+      {"", "subcommand is required"},
+      {"run", "SCENE is required"},
+      {"run absent.aabbs", "absent.aabbs: neither a file nor a generator"},
+      {"run " + cut, "cut.aabbs: byte 305: the header tells 4 frames of 3 objects"},
+      {"info " + cut, "cut.aabbs: byte 305: the header tells 4 frames of 3 objects"},
+      {"run uniform:n=0", "generator uniform: parameter n: 0 is not within"},
+      {"run --threads -1 " + scene, "--threads"},
+      {"run --cell round " + scene, "--cell"},
+      {"run --cell-size 0 " + scene, "--cell-size"},
+      {"run --cell-size wide " + scene, "--cell-size"},
+      {"run --segment-capacity 3 " + scene, "--segment-capacity"},
+      {"run --scalar half " + scene, "--scalar"},
+      {"run --steps -1 " + scene, "--steps"},
+      {"run --diameter -1 " + scene, "--diameter"},
+      {"run --quietly " + scene, "--quietly"},
+      {"run --events - --json - " + scene, "--events and --json"},
+      {"run --events /absent/e.csv " + scene, "cannot write /absent/e.csv"},
+      {"run --json /absent/r.json " + scene, "cannot write /absent/r.json"},
+  };
+  for (const auto& [arguments, reason] : cases) {
+    const Result result = run(arguments);
+    EXPECT_EQ(result.status, 2) << arguments;
+    EXPECT_NE(result.err.find(reason), std::string::npos) << arguments << "\nexpected: " << reason << "\n"
+                                                          << result.err;
+  }
+}
+
+TEST_F(Program, LeavesNoEventsFileWhenTheSceneIsCut) {
+  const std::string text = scene_files::as_dump({{{1, cube(0)}}, {{1, cube(1)}}});
+  const std::string scene = directory_.write("cut.dump", text.substr(0, text.size() - 3));
+  EXPECT_EQ(run("run --events '" + directory_.path("e.csv") + "' '" + scene + "'").status, 2);
+  for (const auto& entry : std::filesystem::directory_iterator(directory_.path(""))) {
+    EXPECT_EQ(entry.path().filename().string().find("e.csv"), std::string::npos) << entry.path();
+  }
+}
+
+TEST_F(Program, WritesTheEventsOfEveryStep) {
+  const std::string expected = "step,event,a,b\n0,begin,4,7\n1,end,4,7\n1,begin,4,5\n2,end,4,5\n2,begin,4,7\n";
+  EXPECT_EQ(run("run --events - " + small_scene()).out, expected);
+  EXPECT_EQ(run("run --verify --events '" + directory_.path("e.csv") + "' " + small_scene()).status, 0);
+  EXPECT_EQ(read_file(directory_.path("e.csv")), expected);
+  const Result two = run("run --steps 0 --events - " + small_scene() + " " + small_scene());
+  EXPECT_EQ(two.out, "scene,step,event,a,b\n1,0,begin,4,7\n2,0,begin,4,7\n");
+}
+
+TEST_F(Program, GivesTheSameEventsForAllSettings) {
+  const std::string scenes = "sizes:n=300,steps=5,density=0.3 clusters:dim=2,n=300,steps=5";
+  const std::string expected = run("run --threads 1 --events - " + scenes).out;
+  EXPECT_GT(std::count(expected.begin(), expected.end(), '\n'), 200);
+  for (const char* settings : {"--threads 2", "--cell segmented --segment-capacity 4", "--cell classic --threads 3",
+                               "--cell plane", "--cell batch --cell-size 2.5", "--cell auto --cell-size auto"}) {
+    EXPECT_EQ(run(std::string("run --verify --events - ") + settings + " " + scenes).out, expected) << settings;
+  }
+}
+
+TEST_F(Program, VerifiesARecordingAndTellsAllInJson) {
+  const std::string recording = std::string(SWEEPGRID_RECORDINGS) + "/lammps_pour_2200.lammpstrj.xz";
+  const Result result = run("run --verify --steps 10 --scalar double --json - '" + recording + "'");
+  EXPECT_EQ(result.status, 0);
+  EXPECT_NE(result.err.find("verified: 10 steps, "), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find("0 missing, 0 extra, 0 duplicate, 0 spurious"), std::string::npos);
+  const auto json = nlohmann::json::parse(result.out);
+  EXPECT_EQ(json["schema"], "sweepgrid-run");
+  EXPECT_EQ(json["schema_version"], 1);
+  EXPECT_EQ(json["settings"]["scalar"], "double");
+  const auto& scene = json["scenes"].at(0);
+  EXPECT_EQ(scene["objects"]["first"], 2150);
+  EXPECT_EQ(scene["pairs"]["first"], 7362);
+  EXPECT_EQ(scene["steps"], 10);
+  EXPECT_EQ(scene["step_ms"]["samples"].size(), 10U);
+  EXPECT_EQ(scene["verification"]["ok"], true);
+  EXPECT_EQ(scene["counters"]["begins"].get<int>() - scene["counters"]["ends"].get<int>(), scene["pairs"]["last"]);
+}
+
+TEST_F(Program, DescribesScenes) {
+  const Result result = run("info '" + std::string(SWEEPGRID_RECORDINGS) + "/bullet_towers_4000.aabbs.xz'");
+  EXPECT_EQ(result.status, 0);
+  for (const char* line :
+       {"  format             aabbs, xz\n", "  steps              100 after the start\n",
+        "  overlapping pairs  3306 first, 3440 last\n", "  objects            4000 first, 4000 last"}) {
+    EXPECT_NE(result.out.find(line), std::string::npos) << line << result.out;
+  }
+}
+
+TEST_F(Program, TellsItsVersionAndItsUse) {
+  EXPECT_EQ(run("--version").status, 0);
+  EXPECT_TRUE(run("--version").out.starts_with("sweepgrid "));
+  const Result help = run("run --help");
+  EXPECT_EQ(help.status, 0);
+  EXPECT_NE(help.out.find("--segment-capacity"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace sweepgrid
