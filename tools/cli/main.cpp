@@ -1,10 +1,14 @@
 // The `sweepgrid` program. Exit status: 0 all is well, 1 a verification failed, 2 bad usage, file or scene.
 
+#include <charconv>
+#include <cmath>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
 #include <map>
+#include <stdexcept>
 #include <string>
+#include <string_view>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -32,10 +36,19 @@ std::string version_text() {
   return fmt::format("sweepgrid {}{}", build.version, commit);
 }
 
-// A number or "auto", which stands for the engine's own choice.
-CLI::Validator or_auto(const CLI::Validator& validator, const std::string& description) {
-  return CLI::Validator([validator](std::string& text) { return text == "auto" ? std::string() : validator(text); },
-                        description);
+// The checks of CLI11 take NaN for a number within any bounds.
+CLI::Validator finite_number(bool zero_too, bool auto_too, const std::string& description) {
+  return CLI::Validator(
+      [=](std::string& text) -> std::string {
+        if (auto_too && text == "auto") return "";
+        double value = 0;
+        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+        const bool is_number = error == std::errc() && end == text.data() + text.size() && std::isfinite(value);
+        if (is_number && (value > 0 || (zero_too && value == 0))) return "";
+        return fmt::format("'{}' is not a {} finite number{}", text, zero_too ? "non-negative" : "positive",
+                           auto_too ? " or 'auto'" : "");
+      },
+      description);
 }
 
 // Options that both commands have.
@@ -45,7 +58,7 @@ void add_scene_options(CLI::App& command, Options& options) {
   command.add_option("--steps", options.steps, "Stop after so many steps, the start not counted")
       ->check(CLI::NonNegativeNumber);
   command.add_option("--diameter", options.scene.diameter, "Of the atoms of a dump without a column for it")
-      ->check(CLI::NonNegativeNumber);
+      ->check(finite_number(true, false, ""));
   const std::map<std::string, ScalarKind> scalars = {{"float", ScalarKind::kFloat}, {"double", ScalarKind::kDouble}};
   command.add_option("--scalar", options.scalar, "Round boxes to float (default) or keep them in double")
       ->transform(CLI::CheckedTransformer(scalars).description("float|double"));
@@ -65,7 +78,7 @@ CLI::App* add_run(CLI::App& app, RunOptions& options, RunTexts& texts) {
   run->add_option("--cell", texts.cell, "Kind of the cells: auto|segmented|batch|classic|plane (default: auto)")
       ->check(CLI::IsMember({"auto", "segmented", "batch", "classic", "plane"}).description(""));
   run->add_option("--cell-size", texts.cell_size, "Edge of a grid cell, in the scene's units (default: auto)")
-      ->check(or_auto(CLI::PositiveNumber, "auto|X"));
+      ->check(finite_number(false, true, "auto|X"));
   run->add_option("--segment-capacity", options.segment_capacity, "Endpoints per segment, at least 4 (segmented)")
       ->check(CLI::Range(4, 1 << 30).description(""));
   run->add_option("--events", options.events_path, kEventsHelp)->type_name("FILE");
@@ -123,7 +136,8 @@ int main(int argc, char** argv) {
   try {
     return sweepgrid::run_main(argc, argv);
   } catch (const std::exception& error) {
-    fmt::print(stderr, "sweepgrid: {}\n", error.what());
+    const std::string_view message = error.what();
+    fmt::print(stderr, "{}{}\n", message.starts_with("sweepgrid: ") ? "" : "sweepgrid: ", message);
     return sweepgrid::kBadInput;
   }
 }
