@@ -1,0 +1,32 @@
+#include <sweepgrid/engine/engine_core.inl.hpp>
+
+#include "engine_oracle_play.hpp"
+
+namespace sweepgrid::oracle {
+namespace {
+
+template <int Dim>
+std::string play_kinds(const SceneRegime& regime) {
+  std::size_t turn = 0;
+  for (const CellKind kind : kKinds) {
+    ++turn;
+    // Without bounds only derived sizes: four dimensions have room for many cells.
+    const GridChoice& grid = kGrids[turn % 3];
+    const auto config = grid.config<std::int32_t, Dim>(kind, make_executor(turn % 2 == 0 ? 1 : 3));
+    const std::string wrong = play<std::int32_t, Dim>(config, SceneScript<std::int32_t, Dim>(regime, turn),
+                                                      regime.steps, kCalls[turn % kCalls.size()]);
+    if (!wrong.empty()) {
+      return std::to_string(Dim) + " dimensions, " + kKindNames[turn - 1] + " cells, " + grid.name + ": " + wrong;
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+std::string play_int(const SceneRegime& regime) {
+  const std::string wrong = play_kinds<1>(regime);
+  return wrong.empty() ? play_kinds<4>(regime) : wrong;
+}
+
+}  // namespace sweepgrid::oracle
