@@ -104,7 +104,9 @@ GridSpec<Scalar, Dim> GridFit<Scalar, Dim>::derive(const std::vector<Box<Scalar,
   }
   double extent = 0;
   for (int axis = 0; axis < Dim; ++axis) extent = std::max(extent, upper[axis] - lower[axis]);
-  if (!(extent > 0 && std::isfinite(extent))) return {};
+  // Anything smaller runs into denormals on its way to cells.
+  constexpr double kSmallestExtent = std::numeric_limits<double>::min() * 65536;
+  if (!(extent >= kSmallestExtent && std::isfinite(extent))) return {};
   double size = extent;
   if (cell_size) {
     size = *cell_size;
@@ -114,7 +116,7 @@ GridSpec<Scalar, Dim> GridFit<Scalar, Dim>::derive(const std::vector<Box<Scalar,
     std::vector<std::uint64_t> cells;
     // Bisection over the exponent: 12 halvings of at most 16 octaves leave the size within 1 %.
     for (int i = 0; i < 12 && large > 1.01 * small; ++i) {
-      size = std::sqrt(small * large);
+      size = std::sqrt(small) * std::sqrt(large);  // the product could underflow or overflow
       (grid_fit::companions<Dim>(points, lower, size, objects, cells) > population ? large : small) = size;
     }
     size = small;

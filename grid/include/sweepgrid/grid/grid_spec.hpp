@@ -5,8 +5,8 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <sstream>
 #include <stdexcept>
-#include <string>
 #include <type_traits>
 
 #include <sweepgrid/grid/cell_range.hpp>
@@ -32,7 +32,7 @@ class GridSpec {
   GridSpec() { counts_.fill(1), origin_.fill(0); }
 
   /// Cells of edge `cell_size` (world units, positive) over `lower` to `upper` (finite).
-  /// Throws std::length_error for more than kMaxCells cells, or kMaxCellsPerAxis on an axis.
+  /// Throws std::invalid_argument for more than kMaxCells cells, or kMaxCellsPerAxis on an axis.
   GridSpec(const std::array<double, Dim>& lower, const std::array<double, Dim>& upper, double cell_size)
       : cell_size_(cell_size), scale_(static_cast<Real>(1 / cell_size)) {
     double total = 1;
@@ -41,9 +41,10 @@ class GridSpec {
       const double cells = std::max(1.0, std::ceil((upper[axis] - lower[axis]) / cell_size));
       total *= cells;
       if (!(cells <= kMaxCellsPerAxis && total <= kMaxCells)) {
-        throw std::length_error("sweepgrid: cell_size " + std::to_string(cell_size) + " makes more than " +
-                                std::to_string(kMaxCells) + " cells, or more than " +
-                                std::to_string(kMaxCellsPerAxis) + " on one axis, over the bounds");
+        std::ostringstream text;
+        text << "sweepgrid: cell_size " << cell_size << " makes more than " << kMaxCells << " cells, or more than "
+             << kMaxCellsPerAxis << " on one axis, over the bounds";
+        throw std::invalid_argument(text.str());
       }
       counts_[axis] = static_cast<std::uint32_t>(cells);
     }
