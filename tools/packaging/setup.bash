@@ -2,6 +2,7 @@
 # Sourcing it goes to the root of the source tree.
 
 set -euo pipefail
+readonly started_in=$PWD
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 
 readonly script_name=tools/${0##*/}
@@ -26,7 +27,7 @@ stage() {
 readonly build_packages=(
   g++ cmake ninja-build libtbb-dev libcli11-dev nlohmann-json3-dev libfmt-dev
   libboost-iostreams-dev zlib1g-dev liblzma-dev libzstd-dev)
-readonly test_packages=(libgtest-dev libeigen3-dev librapidcheck-dev)
+readonly test_packages=(libgtest-dev libeigen3-dev librapidcheck-dev libbenchmark-dev libbullet-dev)
 
 # install_packages <package>...: asks apt for those that are missing, and for nothing when none is.
 install_packages() {
