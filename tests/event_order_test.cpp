@@ -1,0 +1,98 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <sweepgrid/engine/event_order.hpp>
+#include <sweepgrid/engine/key_order.hpp>
+
+#include "op_script.hpp"
+
+namespace sweepgrid {
+namespace {
+
+template <class Key, class Order>
+std::vector<Pair<Key>> sorted_by(const std::vector<Pair<Key>>& pairs, std::size_t shards, std::size_t ranges,
+                                 const std::function<std::size_t(const Pair<Key>&)>& shard_of) {
+  EventOrder<Key, Order> order;
+  order.reset(3);
+  order.shard(1).push_back(pairs.empty() ? Pair<Key>{} : pairs[0]);  // left over from a step before
+  order.reset(shards);
+  for (const auto& pair : pairs) order.shard(shard_of(pair)).push_back(pair);
+  for (std::size_t shard = 0; shard < shards; ++shard) order.sort_shard(shard);
+  std::vector<Pair<Key>> out(5);
+  const std::size_t used = order.cut(ranges, out);
+  EXPECT_LE(used, ranges);
+  EXPECT_EQ(used == 0, pairs.empty());
+  EXPECT_EQ(out.size(), pairs.size());
+  for (std::size_t range = used; range > 0; --range) order.merge_range(range - 1, out);
+  return out;
+}
+
+template <class Order>
+std::vector<Pair<int>> random_pairs(int count, int keys) {
+  oracle::Random random(static_cast<std::uint64_t>(count));
+  std::vector<Pair<int>> pairs;
+  for (int i = 0; i < count; ++i) {
+    pairs.push_back(EventOrder<int, Order>::pair(random.below(keys), keys + random.below(keys)));
+  }
+  return pairs;
+}
+
+template <class Order>
+void expect_same_for_any_shards_and_ranges(int count, int keys) {
+  const auto pairs = random_pairs<Order>(count, keys);
+  auto expected = pairs;
+  std::sort(expected.begin(), expected.end(), EventOrder<int, Order>::less);
+  for (const std::size_t shards : {1, 2, 16, 64}) {
+    for (const std::size_t ranges : {1, 2, 4, 32}) {
+      const auto spread = [&](const Pair<int>& pair) {
+        return static_cast<std::size_t>(pair.first * 31 + pair.second) % shards;
+      };
+      const auto skewed = [&](const Pair<int>& pair) { return pair.first % 50 == 0 ? shards - 1 : 0; };
+      ASSERT_EQ((sorted_by<int, Order>(pairs, shards, ranges, spread)), expected) << shards << " " << ranges;
+      ASSERT_EQ((sorted_by<int, Order>(pairs, shards, ranges, skewed)), expected) << shards << " " << ranges;
+    }
+  }
+}
+
+TEST(EventOrder, IsTheSameForAnyNumberOfShardsAndRanges) {
+  for (const int count : {0, 1, 2, 511, 512, 1024, 5000, 20'000}) {
+    expect_same_for_any_shards_and_ranges<std::less<int>>(count, 100'000);
+  }
+}
+
+TEST(EventOrder, CutsWhereOneKeyIsInMostPairs) {
+  // A ground plane: one first key, so that cuts must fall between pairs and not between keys.
+  for (const int keys : {1, 2, 3}) expect_same_for_any_shards_and_ranges<std::less<int>>(5000, keys);
+}
+
+TEST(EventOrder, FollowsTheOrderOfTheClient) {
+  expect_same_for_any_shards_and_ranges<std::greater<int>>(5000, 300);
+  EXPECT_EQ((EventOrder<int, std::greater<int>>::pair(1, 2)), (Pair<int>{2, 1}));
+}
+
+TEST(EventOrder, PutsTheKeysOfAPairInOrder) {
+  using Order = EventOrder<int, KeyOrder<int>>;
+  EXPECT_EQ(Order::pair(2, -1), (Pair<int>{-1, 2}));
+  EXPECT_EQ(Order::pair(-1, 2), (Pair<int>{-1, 2}));
+  EXPECT_TRUE(Order::less({1, 5}, {2, 3}));
+  EXPECT_TRUE(Order::less({1, 5}, {1, 6}));
+  EXPECT_FALSE(Order::less({1, 5}, {1, 5}));
+}
+
+TEST(EventOrder, MovesKeysThatOwnMemory) {
+  std::vector<Pair<std::string>> pairs;
+  for (int i = 0; i < 2000; ++i) pairs.push_back({"a long name that is not stored in place " + std::to_string(i), "b"});
+  auto expected = pairs;
+  using Order = KeyOrder<std::string>;
+  std::sort(expected.begin(), expected.end(), EventOrder<std::string, Order>::less);
+  const auto shard_of = [](const Pair<std::string>& pair) { return pair.first.size() % 4; };
+  EXPECT_EQ((sorted_by<std::string, Order>(pairs, 4, 3, shard_of)), expected);
+}
+
+}  // namespace
+}  // namespace sweepgrid

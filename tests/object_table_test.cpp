@@ -1,0 +1,255 @@
+// Objects by id, keys by object, and the arrays that both lie in.
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <map>
+#include <set>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include <sweepgrid/engine/key_table.hpp>
+#include <sweepgrid/engine/object_table.hpp>
+#include <sweepgrid/engine/stable_vector.hpp>
+
+#include "op_script.hpp"
+
+namespace sweepgrid {
+namespace {
+
+// ---- StableVector
+
+TEST(StableVector, ElementsNeverMoveAndKeepTheirValues) {
+  StableVector<std::uint32_t> vector;
+  std::vector<std::uint32_t*> addresses;
+  for (std::uint32_t size = 1; size <= 20'000; size += size < 5000 ? 1 : 777) {
+    vector.grow(size);
+    for (auto index = static_cast<std::uint32_t>(addresses.size()); index < size; ++index) {
+      vector[index] = 7 * index;
+      addresses.push_back(&vector[index]);
+    }
+  }
+  const std::set<std::uint32_t*> distinct(addresses.begin(), addresses.end());
+  EXPECT_EQ(distinct.size(), addresses.size());
+  for (std::uint32_t index = 0; index < addresses.size(); ++index) {
+    ASSERT_EQ(addresses[index], &std::as_const(vector)[index]);
+    ASSERT_EQ(vector[index], 7 * index);
+  }
+}
+
+TEST(StableVector, HoldsNothingAtFirstAndAtMostTwiceWhatIsAskedFor) {
+  StableVector<std::uint64_t> vector;
+  EXPECT_EQ(vector.bytes(), 0u);
+  vector.grow(0);
+  EXPECT_EQ(vector.bytes(), 0u);
+  vector.grow(5000);
+  EXPECT_GE(vector.bytes(), 5000 * sizeof(std::uint64_t));
+  EXPECT_LE(vector.bytes(), 2 * 5000 * sizeof(std::uint64_t));
+  const std::size_t bytes = vector.bytes();
+  vector.grow(10);
+  EXPECT_EQ(vector.bytes(), bytes);
+}
+
+// ---- KeyTable
+
+/// A few values only, so that keys collide all the time and clusters wrap round the end of the buckets.
+struct PoorHash {
+  std::size_t operator()(int key) const { return static_cast<std::size_t>(key % 5); }
+};
+
+template <class Hash>
+void expect_key_table_is_a_map() {
+  KeyTable<int, Hash> table;
+  std::map<int, ObjectId> map;
+  std::vector<ObjectId> free;
+  ObjectId next = 0;
+  oracle::Random random(2);
+  for (int call = 0; call < 8000; ++call) {
+    const int key = random.below(call < 4000 ? 900 : 60) - 30;
+    const auto found = map.find(key);
+    ASSERT_EQ(table.find(key), found == map.end() ? kNoObject : found->second);
+    if (found != map.end() && random.percent(50)) {
+      table.erase(found->second);
+      ASSERT_EQ(table.key(found->second), key);
+      free.push_back(found->second);
+      map.erase(found);
+      continue;
+    }
+    int made = 0;
+    const bool added = table.insert(key, [&] {
+      ++made;
+      if (free.empty()) return next++;
+      const ObjectId object = free.back();
+      free.pop_back();
+      return object;
+    });
+    ASSERT_EQ(added, found == map.end());
+    ASSERT_EQ(made, added ? 1 : 0);
+    if (added) map[key] = made != 0 ? table.find(key) : kNoObject;
+  }
+  for (const auto& [key, object] : map) {
+    ASSERT_EQ(table.find(key), object);
+    ASSERT_EQ(table.key(object), key);
+  }
+}
+
+TEST(KeyTable, IsAMap) { expect_key_table_is_a_map<std::hash<int>>(); }
+TEST(KeyTable, IsAMapWithAPoorHash) { expect_key_table_is_a_map<PoorHash>(); }
+
+TEST(KeyTable, AFailedInsertLeavesNoTrace) {
+  KeyTable<std::string, std::hash<std::string>> table;
+  EXPECT_THROW(table.insert("a", []() -> ObjectId { throw std::length_error("full"); }), std::length_error);
+  EXPECT_EQ(table.find("a"), kNoObject);
+  EXPECT_TRUE(table.insert("a", [] { return ObjectId{4}; }));
+  EXPECT_EQ(table.find("a"), 4u);
+  EXPECT_GT(table.bytes(), 0u);
+}
+
+TEST(KeyTable, TakesCallsForDifferentKeysAtOnce) {
+  KeyTable<std::uint64_t, std::hash<std::uint64_t>> table;
+  std::vector<std::thread> threads;
+  for (std::uint64_t own = 0; own < 4; ++own) {
+    threads.emplace_back([&table, own] {
+      for (std::uint64_t key = own; key < 8000; key += 4) {
+        table.insert(key, [&] { return static_cast<ObjectId>(key); });
+        if (key % 3 == 0) table.erase(static_cast<ObjectId>(key));
+        if (key >= 400) static_cast<void>(table.find(key - 400));
+      }
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  for (std::uint64_t key = 0; key < 8000; ++key) {
+    ASSERT_EQ(table.find(key), key % 3 == 0 ? kNoObject : static_cast<ObjectId>(key));
+  }
+}
+
+// ---- ObjectTable
+
+using Table = ObjectTable<double, 2>;
+using Box2 = Box<double, 2>;
+
+const Box2 kHere({0, 0}, {1, 1});
+const Box2 kThere({5, 5}, {6, 6});
+
+/// What the engine does with an object's marks in a step.
+void settle(Table& table) {
+  std::vector<ObjectId> retired;
+  for (ObjectId object = 0; object < table.bound(); ++object) {
+    if ((table.state(object) & Table::kErased) != 0) {
+      table.retire(object);
+      retired.push_back(object);
+    } else if (table.state(object) != 0) {
+      table.state(object) = Table::kLive;
+    }
+  }
+  for (std::uint32_t granule = 0; granule < table.granules(); ++granule) table.unmark_granule(granule);
+  table.free_ids(retired);
+  table.nothing_queued();
+}
+
+TEST(ObjectTable, AHandleIsGoodFromInsertToErase) {
+  Table table;
+  EXPECT_FALSE(table.good(Handle{}));
+  EXPECT_FALSE(table.good(Handle{0, 0}));
+  const Handle handle = table.insert(kHere);
+  EXPECT_TRUE(table.good(handle));
+  EXPECT_EQ(table.handle(handle.index), handle);
+  settle(table);
+  EXPECT_TRUE(table.good(handle));
+  table.erase(handle.index);
+  EXPECT_FALSE(table.good(handle));
+  settle(table);
+  EXPECT_FALSE(table.good(handle));
+  const Handle next = table.insert(kThere);
+  EXPECT_EQ(next.index, handle.index);
+  EXPECT_TRUE(table.good(next));
+  EXPECT_FALSE(table.good(handle));
+}
+
+TEST(ObjectTable, AnIdIsNotReusedInTheStepThatErasesIt) {
+  Table table;
+  const Handle first = table.insert(kHere);
+  settle(table);
+  table.erase(first.index);
+  EXPECT_NE(table.insert(kHere).index, first.index);
+}
+
+TEST(ObjectTable, MarksWhatIsQueuedAndNothingElse) {
+  Table table;
+  for (int i = 0; i < 1000; ++i) table.insert(kHere);
+  EXPECT_EQ(table.granules(), 4u);
+  EXPECT_TRUE(table.anything_queued());
+  settle(table);
+  EXPECT_FALSE(table.anything_queued());
+  table.update(700, kThere);
+  EXPECT_TRUE(table.anything_queued());
+  for (std::uint32_t granule = 0; granule < 4; ++granule) EXPECT_EQ(table.granule_marked(granule), granule == 2);
+  EXPECT_EQ(table.state(700), Table::kLive | Table::kUpdated);
+  EXPECT_EQ(table.state(701), Table::kLive);
+}
+
+TEST(ObjectTable, AnUpdateToTheSameBoxIsNotQueued) {
+  Table table;
+  table.insert(kHere);
+  settle(table);
+  table.update(0, kHere);
+  EXPECT_FALSE(table.anything_queued());
+  table.update(0, kThere);
+  table.update(0, kHere);  // back again, but it has been queued by now
+  EXPECT_EQ(table.record(0).box, kHere);
+  EXPECT_EQ(table.state(0), Table::kLive | Table::kUpdated);
+}
+
+TEST(ObjectTable, EraseAndInsertCanBeTakenBack) {
+  Table table;
+  table.insert(kHere);
+  settle(table);
+  const Handle first = table.handle(0);
+  table.erase(0);
+  EXPECT_EQ(table.size(), 0u);
+  table.cancel_erase(0);
+  EXPECT_TRUE(table.good(first));
+  EXPECT_EQ(table.size(), 1u);
+  EXPECT_EQ(table.state(0), Table::kLive);
+
+  const Handle second = table.insert(kThere);
+  table.cancel_insert(second.index);
+  EXPECT_FALSE(table.good(second));
+  EXPECT_EQ(table.size(), 1u);
+  EXPECT_EQ(table.state(second.index), 0);
+  const Handle third = table.insert(kThere);
+  EXPECT_EQ(third.index, second.index);
+  EXPECT_NE(third, second);
+}
+
+TEST(ObjectTable, TakesCallsForDifferentObjectsAtOnce) {
+  Table table;
+  std::vector<std::thread> threads;
+  for (int own = 0; own < 4; ++own) {
+    threads.emplace_back([&table, own] {
+      std::vector<Handle> handles;
+      for (int i = 0; i < 2000; ++i) handles.push_back(table.insert(Box2({1.0 * own, 1.0 * i}, {9, 9e9})));
+      for (int i = 0; i < 2000; ++i) {
+        const ObjectId object = handles[static_cast<std::size_t>(i)].index;
+        if (i % 3 == 0) table.update(object, Box2({1.0 * own, -1.0 * i}, {9, 9e9}));
+        if (i % 4 == 0) table.erase(object);
+        EXPECT_EQ(table.record(object).box.min[0], own);
+        EXPECT_EQ(table.good(handles[static_cast<std::size_t>(i)]), i % 4 != 0);
+      }
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_EQ(table.bound(), 8000u);
+  EXPECT_EQ(table.size(), 6000u);
+  std::set<std::pair<double, double>> boxes;
+  for (ObjectId object = 0; object < table.bound(); ++object) {
+    boxes.emplace(table.record(object).box.min[0], table.record(object).box.min[1]);
+  }
+  EXPECT_EQ(boxes.size(), 8000u);
+}
+
+}  // namespace
+}  // namespace sweepgrid
