@@ -208,7 +208,11 @@ void EngineCore<Scalar, Dim>::drain(std::size_t index) {
   DrainTask& task = tasks_[index];
   task.deltas.clear();
   task.counters = SapCounters{};
-  for (const auto& cell : task.cells) grid_.drain(task.group, cell, task.deltas, task.counters);
+  const auto cells = task.cells;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    if (i + 2 < cells.size()) grid_.prefetch(cells[i + 1], cells[i + 2]);
+    grid_.drain(task.group, cells[i], task.deltas, task.counters);
+  }
   partition(task);
 }
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include <sweepgrid/grid/grid.hpp>
+#include <sweepgrid/sap/prefetch.hpp>
 
 namespace sweepgrid {
 
@@ -95,7 +96,10 @@ void Grid<Scalar, Dim>::gather(std::size_t group) {
     first += active.op_count;
     queue_[active.cell] = active.first_op;
   }
-  if (out.ops.capacity() > 8 * total) std::vector<Op>().swap(out.ops);
+  if (total > out.ops.capacity() || 2 * total < out.ops.capacity()) {
+    std::vector<Op>().swap(out.ops);
+    out.ops.reserve(total + total / 8);
+  }
   out.ops.resize(total);
   for (std::size_t block = 0; block < queues_.blocks(); ++block) {
     for (const auto& routed : queues_.list(block, group)) out.ops[queue_[routed.cell]++] = routed.op;
@@ -110,6 +114,13 @@ void Grid<Scalar, Dim>::drain(std::size_t group, const ActiveCell& active, std::
   if (!cell) cell = make_cell<Scalar, Dim>(options_);
   cell->drain(std::span<const Op>(groups_[group].ops).subspan(active.first_op, active.op_count), deltas, counters);
   if (cell->size() == 0) cell.reset();
+}
+
+template <class Scalar, int Dim>
+void Grid<Scalar, Dim>::prefetch(const ActiveCell& active, const ActiveCell& next) const {
+  if (const auto* cell = cells_[active.cell].get()) cell->prefetch();
+  // Where a cell's arrays lie is written in the cell itself, so that comes first.
+  sweepgrid::prefetch(cells_[next.cell].get(), 256);
 }
 
 template <class Scalar, int Dim>

@@ -20,11 +20,14 @@ class OpQueues {
   };
 
   /// Empties the queues and gives them `blocks` writers and `groups` (a power of two) readers. Memory that the latest
-  /// step left mostly unused is returned.
+  /// step did not use is returned, but for a little slack.
   void reset(std::size_t blocks, std::size_t groups) {
     for (auto& list : lists_) {
-      if (list.capacity() > 64 && list.size() < list.capacity() / 8) list.shrink_to_fit();
+      const std::size_t wanted = list.size() + list.size() / 8;
+      const bool wasteful = list.capacity() > 64 && wanted + wanted / 8 < list.capacity();
+      if (wasteful) std::vector<Routed>().swap(list);
       list.clear();
+      if (wasteful) list.reserve(wanted);
     }
     lists_.resize(blocks * groups);
     blocks_ = blocks;

@@ -29,6 +29,7 @@ class BatchSap final : public SweepAndPrune<Scalar, Dim> {
   using typename Base::Resident;
 
   void drain(std::span<const Op> ops, std::vector<OverlapDelta>& deltas, SapCounters& counters) override;
+  void prefetch() const override;
   [[nodiscard]] std::size_t size() const override { return slots_.size(); }
   [[nodiscard]] std::size_t bytes() const override;
   void append_residents(std::vector<Resident>& residents) const override;
@@ -52,6 +53,11 @@ class BatchSap final : public SweepAndPrune<Scalar, Dim> {
     std::array<std::uint32_t, Dim> min;
     std::array<std::uint32_t, Dim> max;
   };
+  static constexpr Ranks kEmptyRanks = [] {
+    Ranks ranks{};
+    ranks.min.fill(0xffffffffU);
+    return ranks;
+  }();
 
   /// What one drain passes around.
   struct Drain {
@@ -66,19 +72,21 @@ class BatchSap final : public SweepAndPrune<Scalar, Dim> {
   void local_sort(const Ops& ops, Drain& drain);
   void global_sort(const Ops& ops, Drain& drain);
   void integrate(const Ops& ops, Drain& drain);
+  void integrate_few(const Ops& ops, Drain& drain);
   void write_updates(int axis, const Ops& ops);
   void sort_in_place(int axis, Drain& drain);
   void move_right(int axis, std::uint32_t place, End end, Drain& drain);
   void move_left(int axis, std::uint32_t place, End end, Drain& drain);
-  void integrate_axis(int axis, const Ops& ops, SweepSets& sets, Drain& drain);
+  void integrate_axis(int axis, const Ops& ops, SweepSets* sets, Drain& drain);
   template <bool kForward>
-  void pass(Integration& in, Drain& drain);
+  void pass(const Integration& in, Drain& drain);
   template <bool kForward>
   void sweep(const Integration& in, SweepSets::Set own, End end, SweepSets::Set first, SweepSets::Set second,
              std::int32_t change, Drain& drain);
   template <bool kForward>
   void sweep_retained(const Integration& in, End end, Drain& drain);
   void test_against(const Integration& in, SweepSets::Set set, Slot slot, std::int32_t change, Drain& drain);
+  void test_against_all(Slot slot, std::int32_t change, Drain& drain);
   void read_ranks(int axis);
   void shrink(FloatingList& list);
 

@@ -2,16 +2,21 @@
 
 #include <algorithm>
 #include <iterator>
+#include <limits>
 #include <string>
+#include <utility>
 
 #include <sweepgrid/sap/batch_sap.hpp>
 #include <sweepgrid/sap/invariant.hpp>
+#include <sweepgrid/sap/prefetch.hpp>
 
 namespace sweepgrid {
 
 namespace batch_sap {
 /// Measured (sap/README.md): a local sort wins while fewer than one in this many residents move.
 inline constexpr std::size_t kLocalSortShare = 4;
+/// Measured: up to this many inserts and erases, tests against all residents beat the sweep sets.
+inline constexpr std::size_t kDirectOps = 6;
 }  // namespace batch_sap
 
 template <class Scalar, int Dim>
@@ -19,7 +24,7 @@ struct BatchSap<Scalar, Dim>::Integration {
   int axis;
   bool report_erases;   // on the first axis, while all others still speak of the old boxes
   bool report_inserts;  // on the last axis, when all others speak of the new boxes
-  SweepSets& sets;
+  SweepSets* sets;      // null when nothing is reported by sweeping
   End* list;
   std::ptrdiff_t from;  // place of the next retained endpoint, in the direction of the pass
   std::ptrdiff_t from_end;
@@ -87,18 +92,51 @@ template <class Scalar, int Dim>
 void BatchSap<Scalar, Dim>::integrate(const Ops& ops, Drain& drain) {
   ++drain.counters.global_sorts;
   ranks_.resize(slots_.slot_bound());
-  for (const auto& entry : ops.inserts) {
-    ranks_[entry.slot].min.fill(0xffffffffU);  // empty on every axis until that axis is integrated
-    ranks_[entry.slot].max.fill(0);
+  for (const auto& entry : ops.inserts) ranks_[entry.slot] = kEmptyRanks;
+  if (ops.inserts.size() + ops.erases.size() <= batch_sap::kDirectOps) {
+    integrate_few(ops, drain);
+  } else {
+    SweepSets sets(slots_.slot_bound(), drain.memory);
+    for (int axis = 0; axis < Dim; ++axis) {
+      write_updates(axis, ops);
+      integrate_axis(axis, ops, &sets, drain);
+      read_ranks(axis);
+    }
   }
-  SweepSets sets(slots_.slot_bound(), drain.memory);
+  for (const auto& entry : ops.erases) {
+    ranks_[entry.slot] = kEmptyRanks;
+    slots_.release(entry.op->object);
+  }
+  for (FloatingList& list : lists_) shrink(list);
+}
+
+// For a few ops it is cheaper to test each against all residents than to keep sets while passing over all endpoints.
+// Erased objects are tested before anything has moved, inserted ones after everything has; in between they are empty.
+template <class Scalar, int Dim>
+void BatchSap<Scalar, Dim>::integrate_few(const Ops& ops, Drain& drain) {
+  std::pmr::vector<Ranks> erased(drain.memory);
+  for (const auto& entry : ops.erases) {
+    erased.push_back(ranks_[entry.slot]);
+    test_against_all(entry.slot, -1, drain);
+    ranks_[entry.slot] = kEmptyRanks;  // so that a pair of two erased objects is reported once
+  }
+  for (std::size_t i = 0; i < erased.size(); ++i) ranks_[ops.erases[i].slot] = erased[i];
+  std::pmr::vector<Ranks> inserted(ops.inserts.size(), kEmptyRanks, drain.memory);
   for (int axis = 0; axis < Dim; ++axis) {
     write_updates(axis, ops);
-    integrate_axis(axis, ops, sets, drain);
+    integrate_axis(axis, ops, nullptr, drain);
     read_ranks(axis);
+    for (std::size_t i = 0; i < inserted.size(); ++i) {
+      Ranks& ranks = ranks_[ops.inserts[i].slot];
+      inserted[i].min[axis] = std::exchange(ranks.min[axis], kEmptyRanks.min[axis]);
+      inserted[i].max[axis] = std::exchange(ranks.max[axis], kEmptyRanks.max[axis]);
+    }
   }
-  for (const auto& entry : ops.erases) slots_.release(entry.op->object);
-  for (FloatingList& list : lists_) shrink(list);
+  for (const auto& entry : ops.erases) ranks_[entry.slot] = kEmptyRanks;
+  for (std::size_t i = 0; i < inserted.size(); ++i) {
+    ranks_[ops.inserts[i].slot] = inserted[i];
+    test_against_all(ops.inserts[i].slot, +1, drain);
+  }
 }
 
 template <class Scalar, int Dim>
@@ -163,7 +201,7 @@ void BatchSap<Scalar, Dim>::move_left(int axis, std::uint32_t place, End end, Dr
 }
 
 template <class Scalar, int Dim>
-void BatchSap<Scalar, Dim>::integrate_axis(int axis, const Ops& ops, SweepSets& sets, Drain& drain) {
+void BatchSap<Scalar, Dim>::integrate_axis(int axis, const Ops& ops, SweepSets* sets, Drain& drain) {
   std::pmr::vector<End> inserts(drain.memory);
   inserts.reserve(2 * ops.inserts.size());
   for (const auto& [slot, op] : ops.inserts) {
@@ -185,8 +223,8 @@ void BatchSap<Scalar, Dim>::integrate_axis(int axis, const Ops& ops, SweepSets& 
   const bool forward = list.begin >= added;
   if (!forward && list.storage.size() < list.end + added) list.storage.resize(list.end + added);
   Integration in{axis,
-                 axis == 0 && !erases.empty(),
-                 axis == Dim - 1 && !inserts.empty(),
+                 sets != nullptr && axis == 0 && !erases.empty(),
+                 sets != nullptr && axis == Dim - 1 && !inserts.empty(),
                  sets,
                  list.storage.data(),
                  list.begin,
@@ -214,40 +252,44 @@ void BatchSap<Scalar, Dim>::integrate_axis(int axis, const Ops& ops, SweepSets& 
 // Table 2 of the paper, in either direction. An object "opens" at the first of its endpoints that the pass meets.
 template <class Scalar, int Dim>
 template <bool kForward>
-void BatchSap<Scalar, Dim>::pass(Integration& in, Drain& drain) {
+void BatchSap<Scalar, Dim>::pass(const Integration& in, Drain& drain) {
   constexpr std::ptrdiff_t kStep = kForward ? 1 : -1;
+  constexpr std::ptrdiff_t kNowhere = std::numeric_limits<std::ptrdiff_t>::min();
   const auto before = [](End a, End b) { return kForward ? a < b : b < a; };
-  const std::ptrdiff_t to_begin = in.to;
-  std::size_t insert = 0;
-  std::size_t erase = 0;
+  End* const list = in.list;
+  std::ptrdiff_t from = in.from;
+  std::ptrdiff_t to = in.to;
+  auto insert = in.inserts.begin();
+  auto erase = in.erases.begin();
+  std::ptrdiff_t next_erase = erase == in.erases.end() ? kNowhere : std::ptrdiff_t{*erase};
   while (true) {
-    const bool more = in.from != in.from_end;
-    if (more && erase < in.erases.size() && in.from == std::ptrdiff_t{in.erases[erase]}) {
+    const bool more = from != in.from_end;
+    if (more && from == next_erase) {
       if (in.report_erases) {
-        sweep<kForward>(in, SweepSets::kErased, in.list[in.from], SweepSets::kRetained, SweepSets::kErased, -1, drain);
+        sweep<kForward>(in, SweepSets::kErased, list[from], SweepSets::kRetained, SweepSets::kErased, -1, drain);
       }
-      in.from += kStep;
-      ++erase;
-    } else if (insert < in.inserts.size() && (!more || before(in.inserts[insert], in.list[in.from]))) {
-      const End end = in.inserts[insert++];
+      from += kStep;
+      next_erase = ++erase == in.erases.end() ? kNowhere : std::ptrdiff_t{*erase};
+    } else if (insert != in.inserts.end() && (!more || before(*insert, list[from]))) {
+      const End end = *insert++;
       if (in.report_inserts) {
         sweep<kForward>(in, SweepSets::kInserted, end, SweepSets::kRetained, SweepSets::kInserted, +1, drain);
       }
-      in.list[in.to] = end;
-      in.to += kStep;
+      list[to] = end;
+      to += kStep;
     } else if (more) {
-      const End end = in.list[in.from];
-      in.from += kStep;
-      sweep_retained<kForward>(in, end, drain);
-      std::ptrdiff_t hole = in.to;
-      while (hole != to_begin && before(end, in.list[hole - kStep])) {
-        const End other = in.list[hole - kStep];
-        in.list[hole] = other;
+      const End end = list[from];
+      from += kStep;
+      if (in.report_erases || in.report_inserts) sweep_retained<kForward>(in, end, drain);
+      std::ptrdiff_t hole = to;
+      while (hole != in.to && before(end, list[hole - kStep])) {
+        const End other = list[hole - kStep];
+        list[hole] = other;
         hole -= kStep;
         kForward ? swapped<false>(in.axis, other, end, drain) : swapped<false>(in.axis, end, other, drain);
       }
-      in.list[hole] = end;
-      in.to += kStep;
+      list[hole] = end;
+      to += kStep;
     } else {
       return;
     }
@@ -261,9 +303,9 @@ template <bool kForward>
 void BatchSap<Scalar, Dim>::sweep(const Integration& in, SweepSets::Set own, End end, SweepSets::Set first,
                                   SweepSets::Set second, std::int32_t change, Drain& drain) {
   if (end.is_max() != kForward) {
-    in.sets.add(own, end.owner());
+    in.sets->add(own, end.owner());
   } else {
-    in.sets.remove(own, end.owner());
+    in.sets->remove(own, end.owner());
     test_against(in, first, end.owner(), change, drain);
     test_against(in, second, end.owner(), change, drain);
   }
@@ -272,11 +314,10 @@ void BatchSap<Scalar, Dim>::sweep(const Integration& in, SweepSets::Set own, End
 template <class Scalar, int Dim>
 template <bool kForward>
 void BatchSap<Scalar, Dim>::sweep_retained(const Integration& in, End end, Drain& drain) {
-  if (!in.report_erases && !in.report_inserts) return;
   if (end.is_max() != kForward) {
-    in.sets.add(SweepSets::kRetained, end.owner());
+    in.sets->add(SweepSets::kRetained, end.owner());
   } else {
-    in.sets.remove(SweepSets::kRetained, end.owner());
+    in.sets->remove(SweepSets::kRetained, end.owner());
     if (in.report_erases) test_against(in, SweepSets::kErased, end.owner(), -1, drain);
     if (in.report_inserts) test_against(in, SweepSets::kInserted, end.owner(), +1, drain);
   }
@@ -285,9 +326,17 @@ void BatchSap<Scalar, Dim>::sweep_retained(const Integration& in, End end, Drain
 template <class Scalar, int Dim>
 void BatchSap<Scalar, Dim>::test_against(const Integration& in, SweepSets::Set set, Slot slot, std::int32_t change,
                                          Drain& drain) {
-  for (const Slot other : in.sets.members(set)) {
+  for (const Slot other : in.sets->members(set)) {
     ++drain.counters.box_tests;
     if (overlap_beside(in.axis, slot, other)) report(slot, other, change, drain);
+  }
+}
+
+template <class Scalar, int Dim>
+void BatchSap<Scalar, Dim>::test_against_all(Slot slot, std::int32_t change, Drain& drain) {
+  drain.counters.box_tests += ranks_.size();
+  for (Slot other = 0; other < ranks_.size(); ++other) {
+    if (overlap_beside(-1, slot, other) && other != slot) report(slot, other, change, drain);
   }
 }
 
@@ -341,6 +390,15 @@ void BatchSap<Scalar, Dim>::swapped(int axis, End left, End right, Drain& drain)
 template <class Scalar, int Dim>
 void BatchSap<Scalar, Dim>::report(Slot a, Slot b, std::int32_t change, Drain& drain) {
   drain.deltas.push_back({PairKey(slots_.object(a), slots_.object(b)), change});
+}
+
+template <class Scalar, int Dim>
+void BatchSap<Scalar, Dim>::prefetch() const {
+  slots_.prefetch();
+  sweepgrid::prefetch(ranks_.data(), ranks_.size() * sizeof(Ranks));
+  for (const FloatingList& list : lists_) {
+    sweepgrid::prefetch(list.storage.data() + list.begin, (list.end - list.begin) * sizeof(End));
+  }
 }
 
 template <class Scalar, int Dim>

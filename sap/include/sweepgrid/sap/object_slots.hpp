@@ -6,6 +6,7 @@
 
 #include <sweepgrid/sap/endpoint.hpp>
 #include <sweepgrid/sap/ids.hpp>
+#include <sweepgrid/sap/prefetch.hpp>
 
 namespace sweepgrid {
 
@@ -41,6 +42,8 @@ class ObjectSlots {
   [[nodiscard]] std::size_t slot_bound() const { return objects_.size(); }
 
   void reserve(std::size_t objects);
+
+  void prefetch() const { sweepgrid::prefetch(buckets_.data(), buckets_.size() * sizeof(Bucket)); }
 
   [[nodiscard]] std::size_t bytes() const {
     return buckets_.capacity() * sizeof(Bucket) + (objects_.capacity() + free_.capacity()) * sizeof(std::uint32_t);

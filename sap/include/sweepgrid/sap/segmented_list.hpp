@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <sweepgrid/sap/endpoint.hpp>
+#include <sweepgrid/sap/prefetch.hpp>
 
 namespace sweepgrid {
 
@@ -62,6 +63,11 @@ class SegmentedList {
 
   /// Appends the endpoints of the segment after `segment` to it and drops that. Precondition: they fit.
   void merge_next(SegmentId segment);
+
+  void prefetch() const {
+    sweepgrid::prefetch(pool_.data(), pool_.size() * sizeof(End));
+    sweepgrid::prefetch(links_.data(), links_.size() * sizeof(Link));
+  }
 
   [[nodiscard]] const std::vector<SegmentId>& directory() const { return directory_; }
 

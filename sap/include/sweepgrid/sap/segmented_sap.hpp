@@ -30,6 +30,7 @@ class SegmentedSap final : public SweepAndPrune<Scalar, Dim> {
   explicit SegmentedSap(int segment_capacity);
 
   void drain(std::span<const Op> ops, std::vector<OverlapDelta>& deltas, SapCounters& counters) override;
+  void prefetch() const override;
   [[nodiscard]] std::size_t size() const override { return slots_.size(); }
   [[nodiscard]] std::size_t bytes() const override;
   void append_residents(std::vector<Resident>& residents) const override;

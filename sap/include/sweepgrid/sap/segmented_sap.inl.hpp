@@ -5,6 +5,7 @@
 #include <string>
 
 #include <sweepgrid/sap/invariant.hpp>
+#include <sweepgrid/sap/prefetch.hpp>
 #include <sweepgrid/sap/segmented_sap.hpp>
 
 namespace sweepgrid {
@@ -359,6 +360,13 @@ void SegmentedSap<Scalar, Dim>::leave_checkpoint(SegmentId segment, Slot slot) {
 }
 
 // ---- the rest
+
+template <class Scalar, int Dim>
+void SegmentedSap<Scalar, Dim>::prefetch() const {
+  slots_.prefetch();
+  sweepgrid::prefetch(resting_.data(), resting_.size() * sizeof(Resting));
+  for (const List& list : lists_) list.prefetch();
+}
 
 template <class Scalar, int Dim>
 std::size_t SegmentedSap<Scalar, Dim>::bytes() const {

@@ -32,6 +32,9 @@ class SweepAndPrune {
   /// An op that breaks the second rule throws std::invalid_argument that names the object, and nothing is applied.
   virtual void drain(std::span<const Op> ops, std::vector<OverlapDelta>& deltas, SapCounters& counters) = 0;
 
+  /// Fetches what the next drain() will touch into the cache, while another cell is drained. Does nothing else.
+  virtual void prefetch() const {}
+
   [[nodiscard]] virtual std::size_t size() const = 0;
 
   /// Heap bytes held, unused capacity included.

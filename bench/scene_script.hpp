@@ -1,0 +1,21 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "system.hpp"
+
+namespace sweepgrid::bench {
+
+/// A whole scene in memory, so that reading it is no part of what is timed.
+struct SceneScript {
+  std::string name;
+  std::uint32_t objects = 0;      ///< numbers are below this
+  std::vector<ScriptStep> steps;  ///< the first inserts what is there at the start
+};
+
+/// Reads at most `steps` steps after the start. Throws what open_scene() throws.
+[[nodiscard]] SceneScript read_script(const std::string& scene, std::uint64_t steps);
+
+}  // namespace sweepgrid::bench
