@@ -65,6 +65,7 @@ class Engine {
   /// Applies all that was queued and returns the net change of the set of overlapping pairs since the last step: the
   /// same events in the same order for any thread count, cell kind, grid and order of queueing calls.
   /// The reference stays good, and its content unchanged, until the next step(). O(u + e) beside the cells' work.
+  /// Throws only what allocation throws; after that the engine can only be destroyed.
   const Events<Key>& step();
 
   /// Every overlapping pair as of the latest step, sorted as events are. Built on demand: O(p log p).

@@ -70,7 +70,7 @@ class EngineCore {
     std::span<const typename GridType::ActiveCell> cells;
     std::vector<OverlapDelta> deltas;
     std::vector<OverlapDelta> by_shard;
-    std::vector<std::uint32_t> shard_end;
+    std::vector<std::size_t> shard_end;
     SapCounters counters;
   };
 

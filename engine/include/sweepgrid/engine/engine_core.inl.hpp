@@ -243,7 +243,7 @@ void EngineCore<Scalar, Dim>::reduce(std::size_t index) {
   WitnessTable before;
   if (regridding_) std::swap(before, shard.witnesses);
   for (const DrainTask& task : tasks_) {
-    const std::uint32_t first = index == 0 ? 0 : task.shard_end[index - 1];
+    const std::size_t first = index == 0 ? 0 : task.shard_end[index - 1];
     shard.witnesses.apply(std::span(task.by_shard).subspan(first, task.shard_end[index] - first));
   }
   shard.witnesses.finish(shard.begins, shard.ends);
