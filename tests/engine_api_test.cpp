@@ -582,6 +582,59 @@ TEST(EngineStats, AFollowingSceneMakesTheGridAnew) {
   EXPECT_EQ(engine.stats().step.regrids, 0u);
 }
 
+/// 2000 objects in a square of that edge, centred at `centre`.
+void queue_square(Engine2& engine, float centre, float edge) {
+  oracle::Random random(1);
+  for (std::uint64_t key = 0; key < 2000; ++key) {
+    const auto place = [&] { return centre + edge * (static_cast<float>(random.below(1000)) / 1000 - 0.5F); };
+    const float x = place();
+    const Box2 box = square(x, place(), edge / 1000);
+    if (engine.contains(key)) {
+      engine.update(key, box);
+    } else {
+      engine.insert(key, box);
+    }
+  }
+}
+
+TEST(EngineStats, ASceneThatCollapsesGetsSmallerCells) {
+  Engine2 engine(serial());
+  float edge = 1024;
+  queue_square(engine, 0, edge);
+  engine.step();
+  const double size = engine.stats().cell_size;
+  for (; edge > 1; edge /= 2) {
+    queue_square(engine, 0, edge);
+    engine.step();
+  }
+  EXPECT_LT(engine.stats().cell_size, size / 64);
+  EXPECT_LT(engine.stats().total.regrids, 8u);
+}
+
+TEST(EngineStats, TheGridFollowsASceneThatLeavesIt) {
+  Engine2 engine(serial());
+  queue_square(engine, 0, 100);
+  engine.step();
+  const std::size_t occupied = engine.stats().occupied_cells;
+  queue_square(engine, 5000, 100);
+  engine.step();
+  for (int step = 0; step < 2; ++step) {
+    queue_square(engine, 5000.0F + static_cast<float>(step), 100);
+    engine.step();
+  }
+  EXPECT_GT(engine.stats().occupied_cells, occupied / 2);
+  EXPECT_EQ(engine.stats().total.regrids, 2u);
+}
+
+TEST(EngineStats, ASceneThatStaysKeepsItsGrid) {
+  Engine2 engine(serial());
+  for (int step = 0; step < 20; ++step) {
+    queue_square(engine, static_cast<float>(step % 3), 100);
+    engine.step();
+  }
+  EXPECT_EQ(engine.stats().total.regrids, 1u);
+}
+
 TEST(EngineStats, TasksAreRecordedOnDemand) {
   Engine2 engine(serial());
   engine.insert(1, square(0, 0));
