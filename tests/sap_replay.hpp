@@ -38,6 +38,7 @@ History<Scalar, Dim> shrunk(const CellFactory<Scalar, Dim>& make, History<Scalar
   int budget = 3000;
   const auto keep_if_failing = [&](History<Scalar, Dim> candidate) {
     if (--budget < 0) return;
+    std::erase_if(candidate, [](const auto& drain) { return drain.empty(); });
     const auto [wrong, drains] = replay(make, candidate);
     if (wrong.empty()) return;
     candidate.resize(drains);
@@ -46,7 +47,6 @@ History<Scalar, Dim> shrunk(const CellFactory<Scalar, Dim>& make, History<Scalar
   const auto without = [&](auto unwanted) {
     History<Scalar, Dim> candidate = history;
     for (auto& drain : candidate) std::erase_if(drain, unwanted);
-    std::erase_if(candidate, [](const auto& drain) { return drain.empty(); });
     return candidate;
   };
   for (std::size_t size_before = 0; history.size() != size_before && budget > 0;) {

@@ -1,8 +1,10 @@
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <cstdlib>
 #include <limits>
 #include <memory>
+#include <ostream>
 #include <stdexcept>
 #include <string>
 #include <tuple>
@@ -52,6 +54,9 @@ constexpr Space kSpaces[] = {{"float1", play_cell<float, 1>},        {"float2", 
                              {"int1", play_cell<std::int32_t, 1>},   {"int3", play_cell<std::int32_t, 3>},
                              {"short2", play_cell<std::int16_t, 2>}, {"uint2", play_cell<std::uint32_t, 2>}};
 
+void PrintTo(const NamedKind& kind, std::ostream* out) { *out << kind.name; }
+void PrintTo(const Space& space, std::ostream* out) { *out << space.name; }
+
 /// SWEEPGRID_TEST_SEED picks other scripts, SWEEPGRID_TEST_ROUNDS plays more of them.
 std::uint64_t from_environment(const char* name, std::uint64_t otherwise) {
   const char* const value = std::getenv(name);
@@ -66,7 +71,8 @@ TEST_P(CellDeltas, SumToTheChangeOfEveryPair) {
   const std::uint64_t rounds = from_environment("SWEEPGRID_TEST_ROUNDS", 1);
   for (const Regime& regime : oracle::kRegimes) {
     for (std::uint64_t round = 0; round < rounds; ++round) {
-      EXPECT_EQ(space.play(kind.options, regime, seed + round), "");
+      const std::string wrong = space.play(kind.options, regime, seed + round);
+      if (!wrong.empty()) FAIL() << wrong;
     }
   }
 }
