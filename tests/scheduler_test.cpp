@@ -89,7 +89,7 @@ TEST_P(SchedulerThreads, AreReallyStarted) { EXPECT_TRUE(runs_together(*executor
 
 TEST_P(SchedulerThreads, StageGraphRunsEveryTaskOnce) {
   // Counts on both sides of what is sorted and bundled in different ways; costs in no order, with ties and zeros.
-  for (const std::size_t count : {0, 1, 2, 5, 127, 128, 129, 5000}) {
+  for (const std::size_t count : {0, 1, 2, 5, 511, 512, 513, 5000}) {
     StageGraph graph(executor_);
     std::vector<std::atomic<int>> runs(count);
     graph.add(
@@ -303,7 +303,7 @@ TEST(HostArena, CancelledByTheHostStillRunsEveryTask) {
 }
 
 TEST(StageGraph, StartsTheHeaviestFirst) {
-  for (const std::size_t count : {1, 2, 9, 127, 128, 3000}) {
+  for (const std::size_t count : {1, 2, 9, 511, 512, 3000}) {
     StageGraph graph(make_serial_executor());
     Costs planned;
     std::vector<std::size_t> started;

@@ -14,7 +14,7 @@ constexpr double kBundlesPerWorker = 64;
 // No task is free to start.
 double weight(std::uint64_t cost) { return static_cast<double>(std::max<std::uint64_t>(cost, 1)); }
 
-constexpr std::size_t kRadixThreshold = 128;
+constexpr std::size_t kRadixThreshold = 512;
 constexpr int kRadixBits = 11;
 constexpr std::size_t kRadixSize = std::size_t{1} << kRadixBits;
 
