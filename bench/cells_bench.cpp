@@ -2,9 +2,11 @@
 // sorts and the default segment capacity come from here.
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include <sweepgrid/sap/cell_kind.hpp>
@@ -76,22 +78,25 @@ void drain(benchmark::State& state) {
   for (ObjectId object = 0; object < world.size(); ++object) ops.push_back(world.op(object, OpKind::kInsert));
   cell->drain(ops, deltas, counters);
   counters = SapCounters{};
-  ObjectId next = 0;  // erased in one drain, inserted in the next, so that both stay in use
-  std::vector<ObjectId> out;
+  std::vector<ObjectId> out;  // erased in one drain, inserted in the next
+  std::vector<char> busy(world.size());
+  ObjectId next = 0;
   for (auto _ : state) {
     state.PauseTiming();
     ops.clear();
-    for (const ObjectId object : out) ops.push_back(world.op(object, OpKind::kInsert));
-    out.clear();
+    std::fill(busy.begin(), busy.end(), 0);
+    for (const ObjectId object : std::exchange(out, {})) {
+      ops.push_back(world.op(object, OpKind::kInsert));
+      busy[object] = 1;
+    }
     for (std::size_t i = 0; i < churn; ++i) {
-      next = static_cast<ObjectId>(movers + (next + 1) % (world.size() - movers));
-      bool busy = false;
-      for (const Op& op : ops) busy = busy || op.object == next;
-      if (busy) continue;
+      next = (next + 7) % static_cast<ObjectId>(world.size());
+      if (std::exchange(busy[next], 1) != 0) continue;
       ops.push_back(world.op(next, OpKind::kErase));
       out.push_back(next);
     }
     for (ObjectId object = 0; object < movers; ++object) {
+      if (busy[object] != 0) continue;
       world.move(object);
       ops.push_back(world.op(object, OpKind::kUpdate));
     }
@@ -117,6 +122,7 @@ BENCHMARK(drain)
     ->ArgNames({"kind", "n", "moving", "churn", "capacity"})
     ->ArgsProduct({{kBatch, kSegmented, kClassic, kPlane}, {50, 300}, {100, 1000}, {0, 1}, {32}})
     ->ArgsProduct({{kBatch, kSegmented}, {50, 300, 3000}, {20, 50, 100, 200, 300, 500, 700, 1000}, {0}, {32}})
+    ->ArgsProduct({{kBatch}, {50, 300}, {100, 1000}, {1, 2, 4, 6, 8, 12}, {32}})
     ->ArgsProduct({{kSegmented}, {300, 3000}, {50, 200, 1000}, {1}, {8, 16, 32, 48, 64, 128}});
 
 }  // namespace

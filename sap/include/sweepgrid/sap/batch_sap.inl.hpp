@@ -14,9 +14,9 @@ namespace sweepgrid {
 
 namespace batch_sap {
 /// Measured (sap/README.md): a local sort wins while fewer than one in this many residents move.
-inline constexpr std::size_t kLocalSortShare = 4;
+inline constexpr std::size_t kLocalSortShare = 3;
 /// Measured: up to this many inserts and erases, tests against all residents beat the sweep sets.
-inline constexpr std::size_t kDirectOps = 6;
+inline constexpr std::size_t kDirectOps = 12;
 }  // namespace batch_sap
 
 template <class Scalar, int Dim>

@@ -12,7 +12,7 @@ namespace sweepgrid {
 
 namespace segmented_sap {
 /// Measured (sap/README.md): a global sort wins when at least one in this many residents moves.
-inline constexpr std::size_t kGlobalSortShare = 2;
+inline constexpr std::size_t kGlobalSortShare = 4;
 }  // namespace segmented_sap
 
 template <class Scalar, int Dim>
