@@ -14,6 +14,7 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/task_arena.h>
 #include <oneapi/tbb/task_group.h>
 
@@ -262,13 +263,15 @@ TEST(Executor, OversubscribedOnesDoNotHoldEachOtherBack) {
 }
 
 TEST(HostArena, RunsInTheHostsArena) {
-  oneapi::tbb::task_arena arena(3);
+  // A size that no other arena of this program has.
+  const oneapi::tbb::global_control allowed(oneapi::tbb::global_control::max_allowed_parallelism, 5);
+  oneapi::tbb::task_arena arena(5);
   const auto executor = make_executor_in(arena);
-  EXPECT_EQ(executor->concurrency(), 3);
+  EXPECT_EQ(executor->concurrency(), 5);
   std::atomic<bool> inside = true;
   StageGraph graph(executor);
   graph.add("only", {}, equal_tasks(200), [&](std::size_t) {
-    if (oneapi::tbb::this_task_arena::max_concurrency() != 3) inside = false;
+    if (oneapi::tbb::this_task_arena::max_concurrency() != 5) inside = false;
   });
   graph.run();
   arena.execute([&] { graph.run(); });
