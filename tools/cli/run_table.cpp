@@ -22,7 +22,7 @@ std::string without_extensions(std::string name) {
 }
 
 std::string cut_name(const std::string& scene) {
-  const std::string name = short_name(scene);
+  std::string name = short_name(scene);
   if (name.size() <= kWidestName) return name;
   return name.substr(0, kWidestName - 3) + "...";
 }
