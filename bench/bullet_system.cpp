@@ -32,9 +32,9 @@ btVector3 vector(const FloatBox::Point& point) { return {point[0], point[1], poi
 class BulletSystem final : public System {
  public:
   explicit BulletSystem(std::uint32_t objects) : proxies_(objects) {
-    gDbvtMargin = 0;                       // exact boxes
-    broadphase_.m_deferedcollide = true;   // all collisions in calculateOverlappingPairs, once per step
-    broadphase_.m_cupdates = 100;          // every pair is checked for its end in every step
+    gDbvtMargin = 0;                      // exact boxes
+    broadphase_.m_deferedcollide = true;  // all collisions in calculateOverlappingPairs, once per step
+    broadphase_.m_cupdates = 100;         // every pair is checked for its end in every step
     broadphase_.getOverlappingPairCache()->setInternalGhostPairCallback(&events_);
   }
 
@@ -42,8 +42,8 @@ class BulletSystem final : public System {
     for (const std::uint32_t object : step.erased) broadphase_.destroyProxy(proxies_[object], nullptr);
     for (std::size_t i = 0; i < step.inserted.size(); ++i) {
       const FloatBox& box = step.inserted_boxes[i];
-      proxies_[step.inserted[i]] = broadphase_.createProxy(vector(box.min), vector(box.max), BOX_SHAPE_PROXYTYPE,
-                                                           nullptr, 1, 1, nullptr);
+      proxies_[step.inserted[i]] =
+          broadphase_.createProxy(vector(box.min), vector(box.max), BOX_SHAPE_PROXYTYPE, nullptr, 1, 1, nullptr);
     }
     for (std::size_t i = 0; i < step.updated.size(); ++i) {
       const FloatBox& box = step.updated_boxes[i];

@@ -1,5 +1,5 @@
-// One cell by itself: what a drain costs by kind, population and share of movers. The thresholds between local and global
-// sorts and the default segment capacity come from here.
+// One cell by itself: what a drain costs by kind, population and share of movers. The thresholds between local and
+// global sorts and the default segment capacity come from here.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>

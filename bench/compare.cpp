@@ -25,9 +25,9 @@ using Maker = std::function<std::unique_ptr<System>(std::uint32_t objects)>;
 /// What one run of one system over one scene gave.
 struct Run {
   double first_insert_seconds = 0;
-  double ns_per_update = 0;       // whole steps, queueing included, by moved, inserted and erased objects
-  double step_only_seconds = 0;   // sum over steps
-  double p99_over_mean = 0;       // of the steps' times
+  double ns_per_update = 0;      // whole steps, queueing included, by moved, inserted and erased objects
+  double step_only_seconds = 0;  // sum over steps
+  double p99_over_mean = 0;      // of the steps' times
   std::uint64_t pairs = 0;
   std::uint64_t begins = 0;
   std::uint64_t ends = 0;
@@ -100,8 +100,8 @@ bool compare(const SceneScript& script, const std::vector<std::string>& names,
     for (const std::string& name : names) runs[name].push_back(run_once(systems.at(name), script));
   }
   fmt::print("{}\n  {:<12} {:>10} {:>18} {:>20} {:>9} {:>10} {:>9} {:>10} {:>8}\n", script.name, "system", "ns/update",
-             fmt::format("x faster, of {}", names[0]), "step only, x faster", "p99/mean", "insert ms", "pairs", "begins",
-             "bytes/ob");
+             fmt::format("x faster, of {}", names[0]), "step only, x faster", "p99/mean", "insert ms", "pairs",
+             "begins", "bytes/ob");
   bool agree = true;
   for (const std::string& name : names) {
     const auto column = [&](auto&& figure) {
@@ -110,7 +110,8 @@ bool compare(const SceneScript& script, const std::vector<std::string>& names,
       return values;
     };
     const auto ratios = column([](const Run& a, const Run& b) { return b.ns_per_update / a.ns_per_update; });
-    const auto step_ratios = column([](const Run& a, const Run& b) { return b.step_only_seconds / a.step_only_seconds; });
+    const auto step_ratios =
+        column([](const Run& a, const Run& b) { return b.step_only_seconds / a.step_only_seconds; });
     const auto [low, high] = std::minmax_element(ratios.begin(), ratios.end());
     const double ns = median(column([](const Run& a, const Run&) { return a.ns_per_update; }));
     const double p99 = median(column([](const Run& a, const Run&) { return a.p99_over_mean; }));
@@ -142,10 +143,10 @@ bool compare(const SceneScript& script, const std::vector<std::string>& names,
 }
 
 int run(int argc, char** argv) {
-  CLI::App app("Times broad phases in turn on the same scenes. A ratio is of whole steps in the same round; its median "
-               "and range over the rounds are told.");
-  std::vector<std::string> scenes = {"uniform:n=100000,moving=0.1,churn=0",
-                                     "uniform:n=100000,moving=1,churn=0",
+  CLI::App app(
+      "Times broad phases in turn on the same scenes. A ratio is of whole steps in the same round; its median "
+      "and range over the rounds are told.");
+  std::vector<std::string> scenes = {"uniform:n=100000,moving=0.1,churn=0", "uniform:n=100000,moving=1,churn=0",
                                      "uniform:n=100000,moving=0.1,churn=0.005"};
 #ifdef SWEEPGRID_WITH_BULLET
   std::vector<std::string> names = {"bullet", "batch", "segmented"};
@@ -158,9 +159,14 @@ int run(int argc, char** argv) {
   int segment_capacity = CellOptions{}.segment_capacity;
   std::string json_file;
   app.add_option("scenes", scenes, "Recordings or generators, as `sweepgrid run` takes them")->capture_default_str();
-  app.add_option("--systems", names, "bullet (if built in), batch, segmented, classic, plane; batch2: on 2 threads. "
-                                     "Ratios are to the first")->delimiter(',')->capture_default_str();
-  app.add_option("--rounds", rounds, "Times that all systems run in turn")->check(CLI::PositiveNumber)->capture_default_str();
+  app.add_option("--systems", names,
+                 "bullet (if built in), batch, segmented, classic, plane; batch2: on 2 threads. "
+                 "Ratios are to the first")
+      ->delimiter(',')
+      ->capture_default_str();
+  app.add_option("--rounds", rounds, "Times that all systems run in turn")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
   app.add_option("--steps", steps, "Steps of each scene")->check(CLI::PositiveNumber)->capture_default_str();
   app.add_option("--population", population, "Objects per cell")->capture_default_str();
   app.add_option("--segment-capacity", segment_capacity, "Endpoints per segment")->capture_default_str();
@@ -175,7 +181,8 @@ int run(int argc, char** argv) {
   }
   bool agree = true;
   nlohmann::json json = nlohmann::json::array();
-  for (const std::string& scene : scenes) agree = compare(read_script(scene, steps), names, systems, rounds, json) && agree;
+  for (const std::string& scene : scenes)
+    agree = compare(read_script(scene, steps), names, systems, rounds, json) && agree;
   if (!json_file.empty()) std::ofstream(json_file) << json.dump(2) << '\n';
   return agree ? 0 : 1;
 }

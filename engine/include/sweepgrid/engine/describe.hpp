@@ -11,7 +11,7 @@ namespace sweepgrid {
 /// How an error message names an object.
 template <class Key>
 [[nodiscard]] std::string describe(const Key& key) {
-  if constexpr (requires(std::ostream& out) { out << key; }) {
+  if constexpr (requires(std::ostream & out) { out << key; }) {
     std::ostringstream out;
     out << "object " << key;
     return out.str();

@@ -31,8 +31,8 @@ namespace sweepgrid {
 /// Thread-safety: calls that queue (insert, update, erase) may run at once from many threads as long as no two of them
 /// concern the same object. All other calls want the engine for themselves.
 ///
-/// Errors: bad input throws std::invalid_argument (or std::length_error at the limit of 2^32 - 1 objects) with a message
-/// that names the object, and leaves the engine as it was. A bulk call applies wholly or not at all.
+/// Errors: bad input throws std::invalid_argument (or std::length_error at the limit of 2^32 - 1 objects) with a
+/// message that names the object, and leaves the engine as it was. A bulk call applies wholly or not at all.
 template <class Scalar, int Dim, class Key = std::uint64_t, class Hash = std::hash<Key>, class Order = KeyOrder<Key>>
 class Engine {
  public:

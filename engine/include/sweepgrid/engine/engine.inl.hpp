@@ -235,7 +235,8 @@ SWEEPGRID_ENGINE_TEMPLATE
 ObjectId SWEEPGRID_ENGINE::live(const Key& key, const char* call) const {
   const ObjectId id = keys_.find(key);
   if (id == kNoObject) {
-    throw std::invalid_argument(std::string("sweepgrid: ") + call + " of " + describe(key) + ": no live object has the key");
+    throw std::invalid_argument(std::string("sweepgrid: ") + call + " of " + describe(key) +
+                                ": no live object has the key");
   }
   return id;
 }
@@ -244,15 +245,16 @@ SWEEPGRID_ENGINE_TEMPLATE
 template <class Name>
 void SWEEPGRID_ENGINE::require_valid(const BoxType& box, const Name& object, const char* call) {
   if (!box.valid()) {
-    throw std::invalid_argument(std::string("sweepgrid: ") + call + " of " + describe(object) + ": " + describe_fault(box));
+    throw std::invalid_argument(std::string("sweepgrid: ") + call + " of " + describe(object) + ": " +
+                                describe_fault(box));
   }
 }
 
 SWEEPGRID_ENGINE_TEMPLATE
 void SWEEPGRID_ENGINE::require_same_size(std::size_t objects, std::size_t boxes, const char* call) {
   if (objects != boxes) {
-    throw std::invalid_argument(std::string("sweepgrid: ") + call + " of " + std::to_string(objects) + " objects with " +
-                                std::to_string(boxes) + " boxes");
+    throw std::invalid_argument(std::string("sweepgrid: ") + call + " of " + std::to_string(objects) +
+                                " objects with " + std::to_string(boxes) + " boxes");
   }
 }
 

@@ -54,11 +54,11 @@ EngineCore<Scalar, Dim>::EngineCore(ConfigType config) : config_(std::move(confi
   shards_.resize(std::max<std::size_t>(2, shards));
   shard_shift_ = 64 - std::countr_zero(shards_.size());
   graph_ = std::make_unique<StageGraph>(executor_);
-  const auto stage = [this](const char* name, std::vector<StageGraph::StageId> after,
+  const auto stage = [this](const char* name, const std::vector<StageGraph::StageId>& after,
                             void (EngineCore::*plan)(std::vector<std::uint64_t>&),
                             void (EngineCore::*body)(std::size_t)) {
     return graph_->add(
-        name, std::move(after), [this, plan](std::vector<std::uint64_t>& costs) { (this->*plan)(costs); },
+        name, after, [this, plan](std::vector<std::uint64_t>& costs) { (this->*plan)(costs); },
         [this, body](std::size_t task) { (this->*body)(task); });
   };
   const auto routed = stage("route", {}, &EngineCore::plan_route, &EngineCore::route);
@@ -357,7 +357,8 @@ Stats EngineCore<Scalar, Dim>::stats() const {
   }
   for (const Shard& shard : shards_) {
     stats.pairs += shard.witnesses.size();
-    stats.bytes_witnesses += shard.witnesses.bytes() + (shard.begins.capacity() + shard.ends.capacity()) * sizeof(PairKey);
+    stats.bytes_witnesses +=
+        shard.witnesses.bytes() + (shard.begins.capacity() + shard.ends.capacity()) * sizeof(PairKey);
   }
   return stats;
 }

@@ -14,8 +14,8 @@ struct Pair {
 };
 
 /// The net change of the set of overlapping pairs over one step. Both lists are sorted by (first, second) in key order
-/// and hold no pair twice. A client applies `ends` before `begins`: a key that was erased and inserted again within the step
-/// ends its old pairs and begins its new ones, which may be the same keys. No other pair is in both lists.
+/// and hold no pair twice. A client applies `ends` before `begins`: a key that was erased and inserted again within the
+/// step ends its old pairs and begins its new ones, which may be the same keys. No other pair is in both lists.
 template <class Key>
 struct Events {
   std::vector<Pair<Key>> ends;

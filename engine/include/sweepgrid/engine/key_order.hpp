@@ -12,7 +12,8 @@ struct KeyOrder {
   static_assert(
       requires(const Key& a, const Key& b) {
         { a < b } -> std::convertible_to<bool>;
-      }, "sweepgrid: the key has no operator<; name a strict weak order as Engine's last template argument");
+      },
+      "sweepgrid: the key has no operator<; name a strict weak order as Engine's last template argument");
 
   bool operator()(const Key& a, const Key& b) const { return a < b; }
 };

@@ -11,14 +11,14 @@ namespace sweepgrid {
 
 /// Exact counts of one step. The same for every thread count and every order of queueing calls.
 struct StepCounters {
-  SapCounters cells;                  ///< the work inside the cells
-  std::uint64_t inserts = 0;          ///< objects inserted (not those erased again before the step)
-  std::uint64_t updates = 0;          ///< objects that lived on with a changed box
-  std::uint64_t erases = 0;           ///< objects erased
-  std::uint64_t migrations = 0;       ///< updates that changed the cell range
-  std::uint64_t cell_ops = 0;         ///< ops queued to cells; an object in c cells counts c times
-  std::uint64_t cells_drained = 0;    ///< active cells
-  std::uint64_t regrids = 0;          ///< 1 when the grid was derived anew, else 0
+  SapCounters cells;                ///< the work inside the cells
+  std::uint64_t inserts = 0;        ///< objects inserted (not those erased again before the step)
+  std::uint64_t updates = 0;        ///< objects that lived on with a changed box
+  std::uint64_t erases = 0;         ///< objects erased
+  std::uint64_t migrations = 0;     ///< updates that changed the cell range
+  std::uint64_t cell_ops = 0;       ///< ops queued to cells; an object in c cells counts c times
+  std::uint64_t cells_drained = 0;  ///< active cells
+  std::uint64_t regrids = 0;        ///< 1 when the grid was derived anew, else 0
   std::uint64_t begins = 0;
   std::uint64_t ends = 0;
 
@@ -34,8 +34,8 @@ struct StageTime {
 
 /// What Engine::stats() returns.
 struct Stats {
-  StepCounters step;    ///< the latest step
-  StepCounters total;   ///< all steps so far
+  StepCounters step;   ///< the latest step
+  StepCounters total;  ///< all steps so far
   std::uint64_t steps = 0;
   std::vector<StageTime> stages;  ///< the latest step, in stage order
 

@@ -87,7 +87,8 @@ void EngineCore<Scalar, Dim>::validate_witnesses() const {
     const std::int32_t count = shards_[shard_of(pair)].witnesses.count(pair);
     require_invariant(static_cast<std::size_t>(count) == end - first, count == 0 ? "S4" : "E1", [&] {
       return "pair of objects " + std::to_string(pair.lower()) + " and " + std::to_string(pair.upper()) +
-             " overlaps in " + std::to_string(end - first) + " cells, but its witness count is " + std::to_string(count);
+             " overlaps in " + std::to_string(end - first) + " cells, but its witness count is " +
+             std::to_string(count);
     });
   }
   std::size_t known = 0;

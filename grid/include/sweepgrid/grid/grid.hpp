@@ -55,7 +55,8 @@ class Grid {
   /// Applies a cell's ops; see SweepAndPrune::drain. A cell is created by its first insert and dropped when empty.
   void drain(std::size_t group, const ActiveCell& active, std::vector<OverlapDelta>& deltas, SapCounters& counters);
 
-  /// Fetches what draining the cell will touch into the cache. `next`: the cell after it, whose turn to be fetched is next.
+  /// Fetches what draining the cell will touch into the cache. `next`: the cell after it, whose turn to be fetched is
+  /// next.
   void prefetch(const ActiveCell& active, const ActiveCell& next) const;
 
   /// The cell's sweep and prune, null where the cell is empty.

@@ -131,8 +131,9 @@ GridSpec<Scalar, Dim> GridFit<Scalar, Dim>::derive(const std::vector<Box<Scalar,
     }
     using Spec = GridSpec<Scalar, Dim>;
     // Empty cells cost memory: a derived grid has no more of them than objects, beyond a floor.
-    const double limit = cell_size ? static_cast<double>(Spec::kMaxCells)
-                                   : std::min(static_cast<double>(Spec::kMaxCells), 4096.0 + static_cast<double>(objects));
+    const double limit = cell_size
+                             ? static_cast<double>(Spec::kMaxCells)
+                             : std::min(static_cast<double>(Spec::kMaxCells), 4096.0 + static_cast<double>(objects));
     return !(total <= limit && longest <= static_cast<double>(Spec::kMaxCellsPerAxis));
   };
   while (too_large()) size *= cell_size ? 2 : 1.25;

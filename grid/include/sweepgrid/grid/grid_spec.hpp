@@ -87,7 +87,9 @@ class GridSpec {
  private:
   using Real = std::conditional_t<std::is_same_v<Scalar, float>, float, double>;
 
-  [[nodiscard]] Real scaled(int axis, Scalar value) const { return (static_cast<Real>(value) - origin_[axis]) * scale_; }
+  [[nodiscard]] Real scaled(int axis, Scalar value) const {
+    return (static_cast<Real>(value) - origin_[axis]) * scale_;
+  }
 
   [[nodiscard]] std::uint16_t coordinate(int axis, Scalar value) const {
     // Clamped before the conversion: an integer cannot hold what a coordinate at 1e30 or infinity scales to. The order

@@ -28,8 +28,8 @@ struct BatchSap<Scalar, Dim>::Integration {
   End* list;
   std::ptrdiff_t from;  // place of the next retained endpoint, in the direction of the pass
   std::ptrdiff_t from_end;
-  std::ptrdiff_t to;              // place to write next
-  std::span<const End> inserts;            // in the order of the pass
+  std::ptrdiff_t to;                      // place to write next
+  std::span<const End> inserts;           // in the order of the pass
   std::span<const std::uint32_t> erases;  // places, in the order of the pass
 };
 
@@ -93,7 +93,8 @@ void BatchSap<Scalar, Dim>::integrate(const Ops& ops, Drain& drain) {
   ++drain.counters.global_sorts;
   ranks_.resize(slots_.slot_bound());
   for (const auto& entry : ops.inserts) ranks_[entry.slot] = kEmptyRanks;
-  if (ops.inserts.size() + ops.erases.size() <= batch_sap::kDirectOps) {
+  // On one axis there is no other on which an inserted object could be empty.
+  if (Dim > 1 && ops.inserts.size() + ops.erases.size() <= batch_sap::kDirectOps) {
     integrate_few(ops, drain);
   } else {
     SweepSets sets(slots_.slot_bound(), drain.memory);
@@ -222,17 +223,11 @@ void BatchSap<Scalar, Dim>::integrate_axis(int axis, const Ops& ops, SweepSets* 
   const auto count = static_cast<std::uint32_t>(list.end - list.begin + added - erases.size());
   const bool forward = list.begin >= added;
   if (!forward && list.storage.size() < list.end + added) list.storage.resize(list.end + added);
-  Integration in{axis,
-                 sets != nullptr && axis == 0 && !erases.empty(),
-                 sets != nullptr && axis == Dim - 1 && !inserts.empty(),
-                 sets,
-                 list.storage.data(),
-                 list.begin,
+  Integration in{axis, sets != nullptr && axis == 0 && !erases.empty(),
+                 sets != nullptr && axis == Dim - 1 && !inserts.empty(), sets, list.storage.data(), list.begin,
                  list.end,
                  // With nothing to insert the list stays where it is.
-                 added == 0 ? list.begin : 0,
-                 inserts,
-                 erases};
+                 added == 0 ? list.begin : 0, inserts, erases};
   if (forward) {
     list.begin = static_cast<std::uint32_t>(in.to);
     list.end = list.begin + count;
@@ -361,11 +356,11 @@ template <class Scalar, int Dim>
 bool BatchSap<Scalar, Dim>::overlap_beside(int axis, Slot a, Slot b) const {
   const Ranks& x = ranks_[a];
   const Ranks& y = ranks_[b];
-  bool overlap = true;
+  unsigned overlap = 1;
   for (int d = 0; d < Dim; ++d) {
-    overlap &= ((x.min[d] < y.max[d]) & (y.min[d] < x.max[d])) | (d == axis);
+    overlap &= (unsigned{x.min[d] < y.max[d]} & unsigned{y.min[d] < x.max[d]}) | unsigned{d == axis};
   }
-  return overlap;
+  return overlap != 0;
 }
 
 template <class Scalar, int Dim>

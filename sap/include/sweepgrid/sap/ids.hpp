@@ -15,8 +15,7 @@ inline constexpr ObjectId kNoObject = 0xffffffffU;
 class PairKey {
  public:
   PairKey() = default;
-  PairKey(ObjectId a, ObjectId b)
-      : bits_(a < b ? std::uint64_t{a} << 32 | b : std::uint64_t{b} << 32 | a) {}
+  PairKey(ObjectId a, ObjectId b) : bits_(a < b ? std::uint64_t{a} << 32 | b : std::uint64_t{b} << 32 | a) {}
 
   [[nodiscard]] ObjectId lower() const { return static_cast<ObjectId>(bits_ >> 32); }
   [[nodiscard]] ObjectId upper() const { return static_cast<ObjectId>(bits_); }

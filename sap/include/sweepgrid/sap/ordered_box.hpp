@@ -53,13 +53,13 @@ struct OrderedBox {
 
   /// Overlap on every axis but `skipped`; pass -1 to skip none.
   [[nodiscard]] bool overlaps_beside(int skipped, const OrderedBox& other) const {
-    bool overlap = true;
+    // Bitwise on purpose: the outcome is unpredictable, and a branch per axis costs more than the comparisons.
+    unsigned overlap = 1;
     for (int axis = 0; axis < Dim; ++axis) {
-      // Bitwise on purpose: the outcome is unpredictable, and a branch per axis costs more than the comparisons.
-      const bool meets = (min[axis] <= other.max[axis]) & (other.min[axis] <= max[axis]);
-      overlap &= meets | (axis == skipped);
+      const auto meets = unsigned{min[axis] <= other.max[axis]} & unsigned{other.min[axis] <= max[axis]};
+      overlap &= meets | unsigned{axis == skipped};
     }
-    return overlap;
+    return overlap != 0;
   }
 
   [[nodiscard]] bool overlaps(const OrderedBox& other) const { return overlaps_beside(-1, other); }

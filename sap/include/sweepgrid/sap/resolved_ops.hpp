@@ -36,8 +36,8 @@ struct ResolvedOps {
   Entries updates;
   Entries erases;
 
-  /// Looks every object up, then gives the new ones slots. Throws std::invalid_argument that names the object before any
-  /// slot is given when an insert names a present object, or an update or erase an absent one.
+  /// Looks every object up, then gives the new ones slots. Throws std::invalid_argument that names the object before
+  /// any slot is given when an insert names a present object, or an update or erase an absent one.
   ResolvedOps(std::span<const CellOp<Scalar, Dim>> ops, ObjectSlots& slots, std::pmr::memory_resource* memory)
       : inserts(memory), updates(memory), erases(memory) {
     updates.reserve(ops.size());
@@ -53,7 +53,7 @@ struct ResolvedOps {
   [[noreturn]] static void refuse(const CellOp<Scalar, Dim>& op) {
     const bool insert = op.kind == OpKind::kInsert;
     throw std::invalid_argument("sweepgrid: cell was told to " +
-                                std::string(insert                           ? "insert"
+                                std::string(insert                       ? "insert"
                                             : op.kind == OpKind::kUpdate ? "update"
                                                                          : "erase") +
                                 " object " + std::to_string(op.object) +

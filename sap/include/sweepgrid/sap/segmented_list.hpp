@@ -96,9 +96,8 @@ class SegmentedList {
 template <class Scalar>
 auto SegmentedList<Scalar>::segment_for(End end) -> SegmentId {
   if (directory_.empty()) directory_.push_back(allocate());
-  const auto found =
-      std::partition_point(directory_.begin(), directory_.end() - 1,
-                           [&](SegmentId segment) { return ends(segment)[count(segment) - 1] < end; });
+  const auto found = std::partition_point(directory_.begin(), directory_.end() - 1,
+                                          [&](SegmentId segment) { return ends(segment)[count(segment) - 1] < end; });
   return *found;
 }
 

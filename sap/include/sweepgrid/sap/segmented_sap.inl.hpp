@@ -117,9 +117,9 @@ void SegmentedSap<Scalar, Dim>::sort_axis(int axis, Drain& drain) {
   for (SegmentId segment = list.front(); segment != List::kNone; before = segment, segment = list.next(segment)) {
     End* const ends = list.ends(segment);
     for (std::uint32_t offset = 0; offset < list.count(segment); ++offset) {
-      const bool in_order = offset > 0                ? ends[offset - 1] < ends[offset]
+      const bool in_order = offset > 0              ? ends[offset - 1] < ends[offset]
                             : before == List::kNone ? true
-                                                      : list.ends(before)[list.count(before) - 1] < ends[offset];
+                                                    : list.ends(before)[list.count(before) - 1] < ends[offset];
       if (!in_order) move_left<false>(axis, {segment, offset}, ends[offset], drain);
     }
   }
@@ -307,8 +307,7 @@ void SegmentedSap<Scalar, Dim>::swapped(int axis, End left, End right, Drain& dr
   }
   ++drain.counters.box_tests;
   if (a.overlaps_beside(axis, b)) {
-    drain.deltas.push_back(
-        {PairKey(slots_.object(left.owner()), slots_.object(right.owner())), begins ? +1 : -1});
+    drain.deltas.push_back({PairKey(slots_.object(left.owner()), slots_.object(right.owner())), begins ? +1 : -1});
   }
 }
 
@@ -402,8 +401,9 @@ void SegmentedSap<Scalar, Dim>::validate() const {
                           "S1", [&] { return where() + " is unordered between segments"; });
         const bool placed = end.is_max() ? resting.max_segment[axis] == segment && resting.box.max[axis] == end.value()
                                          : resting.min_segment[axis] == segment && resting.box.min[axis] == end.value();
-        require_invariant(slots_.object(end.owner()) != kNoObject && placed && open[end.owner()] == (end.is_max() ? 1 : 0),
-                          "S2", [&] { return where() + " holds a stray endpoint of slot " + std::to_string(end.owner()); });
+        require_invariant(
+            slots_.object(end.owner()) != kNoObject && placed && open[end.owner()] == (end.is_max() ? 1 : 0), "S2",
+            [&] { return where() + " holds a stray endpoint of slot " + std::to_string(end.owner()); });
         open[end.owner()] = end.is_max() ? 2 : 1;
       }
       if (axis != 0) continue;
