@@ -635,6 +635,35 @@ TEST(EngineStats, ASceneThatStaysKeepsItsGrid) {
   EXPECT_EQ(engine.stats().total.regrids, 1u);
 }
 
+TEST(EngineStats, ACrowdThatMovesOnlySometimesKeepsItsGrid) {
+  Engine2 engine(serial());
+  constexpr int kCold = 2000;
+  constexpr int kHot = 400;
+  const auto box_of = [](int object, int step) {
+    const auto shift = static_cast<float>(step % 2) * 1e-4F;
+    if (object >= kCold) return square(500 + static_cast<float>(object - kCold) * 1e-5F + shift, 500);
+    return square(static_cast<float>(object * 37 % 1000) + shift, static_cast<float>(object * 61 % 1009));
+  };
+  for (int object = 0; object < kCold + kHot; ++object) engine.insert(object, box_of(object, 0));
+  engine.step();
+  for (int step = 1; step < 30; ++step) {
+    const bool hot = step % 3 == 0;
+    for (int object = hot ? kCold : 0; object < (hot ? kCold + kHot : kCold); ++object) {
+      engine.update(object, box_of(object, step));
+    }
+    engine.step();
+  }
+  EXPECT_LE(engine.stats().total.regrids, 2u);
+}
+
+TEST(EngineStats, AnIdleStepTookNoTime) {
+  Engine2 engine(serial());
+  engine.insert(1, square(0, 0));
+  engine.step();
+  engine.step();
+  for (const StageTime& stage : engine.stats().stages) EXPECT_EQ(stage.seconds, 0);
+}
+
 TEST(EngineStats, TasksAreRecordedOnDemand) {
   Engine2 engine(serial());
   engine.insert(1, square(0, 0));

@@ -14,7 +14,8 @@ template <class Scalar, int Dim>
 struct Config {
   /// Kind of the cells and its parameters.
   CellOptions cell;
-  /// Edge of a grid cell in world units, positive and finite; absent: derived from the boxes.
+  /// Edge of a grid cell in world units, positive and finite; absent: derived from the boxes. With derived bounds it is
+  /// doubled while the grid would have more than 4096 cells and eight for each object.
   std::optional<double> cell_size;
   /// The space that the grid divides, finite; absent: derived from the boxes. Objects outside are kept exactly in the
   /// cells at its border.

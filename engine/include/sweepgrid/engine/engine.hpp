@@ -49,7 +49,8 @@ class Engine {
   std::vector<Handle> insert(std::span<const Key> keys, std::span<const BoxType> boxes);
 
   /// Queues a new box. The last update before a step wins. An update to the box that the object has costs nothing more.
-  /// Errors: a stale or foreign handle, an unknown key, an erased object, a bad box. O(1).
+  /// Errors: a stale handle, an unknown key, an erased object, a bad box. A handle of another engine is recognised only
+  /// where no object of this one has its index and generation. O(1).
   void update(Handle object, const BoxType& box);
   void update(const Key& key, const BoxType& box);
   /// As above for objects[i], boxes[i], in order. The fastest way to move many.
@@ -88,7 +89,7 @@ class Engine {
 
   /// Records each task's stage, size, start and duration in later steps. Off at first.
   void record_tasks(bool on);
-  /// The tasks of the latest step, if it was recorded.
+  /// The tasks of the latest step that had anything to do, if it was recorded.
   [[nodiscard]] const TaskTrace& tasks() const;
   [[nodiscard]] std::vector<std::string> stage_names() const;
 

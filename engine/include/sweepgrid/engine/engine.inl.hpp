@@ -53,10 +53,16 @@ SWEEPGRID_ENGINE_TEMPLATE
 Handle SWEEPGRID_ENGINE::insert(const Key& key, const BoxType& box) {
   require_valid(box, key, "insert");
   Handle handle;
-  const bool added = keys_.insert(key, [&] {
-    handle = core_.objects().insert(box);
-    return handle.index;
-  });
+  bool added = false;
+  try {
+    added = keys_.insert(key, [&] {
+      handle = core_.objects().insert(box);
+      return handle.index;
+    });
+  } catch (...) {  // the key could not be stored
+    if (handle.index != kNoObject) core_.objects().cancel_insert(handle.index);
+    throw;
+  }
   if (!added) throw std::invalid_argument("sweepgrid: insert of " + describe(key) + ": the key names a live object");
   return handle;
 }

@@ -91,9 +91,11 @@ class EngineCore {
   void reduce(std::size_t shard);
   void finish_step();
 
-  [[nodiscard]] bool wants_regrid() const;
   [[nodiscard]] bool fixed_grid() const { return config_.cell_size && config_.bounds; }
-  void regrid();
+  [[nodiscard]] bool outgrown() const;
+  [[nodiscard]] bool crowded() const;
+  [[nodiscard]] GridSpec<Scalar, Dim> derive_grid() const;
+  void follow_scene();
   [[nodiscard]] std::size_t shard_of(PairKey pair) const { return WitnessTable::hash(pair) >> shard_shift_; }
   void validate_residents() const;
   void validate_witnesses() const;
@@ -109,8 +111,9 @@ class EngineCore {
   std::int64_t outside_ = 0;
   std::int64_t outside_at_fit_ = 0;
   double crowding_ = 0;         // residents that the average op of the latest step met in its cell
-  double crowding_at_fit_ = 0;  // the same in the first step after the grid was derived
+  double crowding_at_fit_ = 0;  // the same when the grid was found to be as good as it gets
 
+  bool idle_ = true;         // the latest step had nothing to do
   bool regridding_ = false;  // this step inserts every object into a new grid
   std::vector<RouteBlock> blocks_;
   std::vector<DrainTask> tasks_;

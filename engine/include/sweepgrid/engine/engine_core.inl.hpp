@@ -69,7 +69,11 @@ EngineCore<Scalar, Dim>::EngineCore(ConfigType config) : config_(std::move(confi
   // A barrier on purpose: a migrating pair yields -1 in the cell it leaves and +1 in the cell it enters, in either
   // order. Summed after all cells are drained this is 0; summed as cells finish it is a false end and begin.
   reduce_stage_ = stage("reduce", {drained}, &EngineCore::plan_reduce, &EngineCore::reduce);
-  if (fixed_grid()) regrid();
+  if (fixed_grid()) {
+    const auto extent = grid_fit::extent_of(*config_.bounds);
+    grid_.reset(GridSpec<Scalar, Dim>(extent.lower, extent.upper, *config_.cell_size), config_.cell);
+    gridded_ = true;
+  }
 }
 
 template <class Scalar, int Dim>
@@ -79,7 +83,8 @@ template <class Scalar, int Dim>
 void EngineCore<Scalar, Dim>::step() {
   counters_ = StepCounters{};
   regridding_ = false;
-  if (objects_.anything_queued()) {
+  idle_ = !objects_.anything_queued();
+  if (!idle_) {
     graph_->run();
     finish_step();
   } else {
@@ -93,7 +98,7 @@ void EngineCore<Scalar, Dim>::step() {
 
 template <class Scalar, int Dim>
 void EngineCore<Scalar, Dim>::plan_route(std::vector<std::uint64_t>& costs) {
-  if (wants_regrid()) regrid();
+  follow_scene();
   objects_.nothing_queued();
   const std::uint32_t granules = objects_.granules();
   std::vector<std::uint32_t> marked;
@@ -280,35 +285,46 @@ void EngineCore<Scalar, Dim>::finish_step() {
 
 // ---- the grid
 
-/// The scene has outgrown the grid when it holds twice or a quarter of the objects, when an eighth of them has left the
-/// bounds, or when the cells that ops go to have become twice as crowded.
+// Twice or a quarter of the objects, or an eighth of them has left the bounds.
 template <class Scalar, int Dim>
-bool EngineCore<Scalar, Dim>::wants_regrid() const {
-  if (fixed_grid()) return false;
-  if (!gridded_) return true;
+bool EngineCore<Scalar, Dim>::outgrown() const {
   const std::size_t objects = objects_.size();
   if (objects > 2 * objects_at_fit_ || 4 * objects + 64 < objects_at_fit_) return true;
-  if (!config_.bounds && 8 * (outside_ - outside_at_fit_) > static_cast<std::int64_t>(objects)) return true;
+  return !config_.bounds && 8 * (outside_ - outside_at_fit_) > static_cast<std::int64_t>(objects);
+}
+
+// The cells that ops go to have become twice as crowded.
+template <class Scalar, int Dim>
+bool EngineCore<Scalar, Dim>::crowded() const {
   return crowding_at_fit_ > 0 && crowding_ > 2 * std::max<double>(crowding_at_fit_, 2.0 * config_.cell_population);
 }
 
+// Derives the grid anew when the scene calls for it. All objects then move to a new grid in this step, except when it
+// is only for the crowd and cells would hardly become smaller: this crowd is then what the scene is like.
 template <class Scalar, int Dim>
-void EngineCore<Scalar, Dim>::regrid() {
+void EngineCore<Scalar, Dim>::follow_scene() {
+  if (fixed_grid()) return;
+  const bool must = !gridded_ || outgrown();
+  if (!must && !crowded()) return;
+  const GridSpec<Scalar, Dim> spec = derive_grid();
+  if (!must && spec.cell_size() > 0.75 * grid_.spec().cell_size()) {
+    crowding_at_fit_ = crowding_;
+    return;
+  }
+  grid_.reset(spec, config_.cell);
+  gridded_ = true;
+  regridding_ = true;
+  objects_at_fit_ = std::max<std::size_t>(objects_.size(), 32);
+  outside_ = 0;
+  counters_.regrids = 1;
+}
+
+template <class Scalar, int Dim>
+GridSpec<Scalar, Dim> EngineCore<Scalar, Dim>::derive_grid() const {
   GridFit<Scalar, Dim> fit;
   fit.population = config_.cell_population;
   fit.cell_size = config_.cell_size;
   fit.bounds = config_.bounds;
-  if (fixed_grid()) {
-    std::array<double, Dim> lower;
-    std::array<double, Dim> upper;
-    for (int axis = 0; axis < Dim; ++axis) {
-      lower[axis] = static_cast<double>(config_.bounds->min[axis]);
-      upper[axis] = static_cast<double>(config_.bounds->max[axis]);
-    }
-    grid_.reset(GridSpec<Scalar, Dim>(lower, upper, *config_.cell_size), config_.cell);
-    gridded_ = true;
-    return;
-  }
   std::vector<BoxType> sample;
   const std::size_t stride = std::max<std::size_t>(1, objects_.size() / GridFit<Scalar, Dim>::kSample);
   std::size_t seen = 0;
@@ -317,12 +333,7 @@ void EngineCore<Scalar, Dim>::regrid() {
     if (state == 0 || (state & Objects::kErased) != 0) continue;
     if (seen++ % stride == 0) sample.push_back(objects_.record(object).box);
   }
-  grid_.reset(fit.derive(sample, objects_.size()), config_.cell);
-  objects_at_fit_ = std::max<std::size_t>(objects_.size(), 32);
-  outside_ = 0;
-  regridding_ = true;
-  gridded_ = true;
-  counters_.regrids = 1;
+  return fit.derive(sample, objects_.size());
 }
 
 // ---- what clients ask for
@@ -341,7 +352,7 @@ Stats EngineCore<Scalar, Dim>::stats() const {
   stats.total = total_;
   stats.steps = steps_;
   for (StageGraph::StageId stage = 0; stage < graph_->size(); ++stage) {
-    stats.stages.push_back({graph_->name(stage), graph_->seconds(stage)});
+    stats.stages.push_back({graph_->name(stage), idle_ ? 0 : graph_->seconds(stage)});
   }
   stats.objects = objects_.size();
   stats.cell_size = grid_.spec().cell_size();

@@ -9,7 +9,8 @@
 
 namespace sweepgrid {
 
-/// Exact counts of one step. The same for every thread count and every order of queueing calls.
+/// Exact counts of one step. The same for every thread count, and for every order of updates and erases; the order of
+/// inserts decides ids, and ids the order in which cells do their work.
 struct StepCounters {
   SapCounters cells;                ///< the work inside the cells
   std::uint64_t inserts = 0;        ///< objects inserted (not those erased again before the step)
@@ -37,7 +38,7 @@ struct Stats {
   StepCounters step;   ///< the latest step
   StepCounters total;  ///< all steps so far
   std::uint64_t steps = 0;
-  std::vector<StageTime> stages;  ///< the latest step, in stage order
+  std::vector<StageTime> stages;  ///< the latest step, in stage order; 0 when nothing was queued
 
   std::size_t objects = 0;
   std::size_t cells = 0;           ///< of the grid

@@ -16,7 +16,8 @@ template <class Scalar, int Dim>
 struct GridFit {
   /// Objects that one cell should hold.
   int population = 48;
-  /// Given by the client, else derived. A given size is doubled until the grid is not too large.
+  /// Given by the client, else derived. A grid that would have far more cells than objects leaves out more of the
+  /// objects far away, which border cells then serve, and after that doubles the size.
   std::optional<double> cell_size;
   std::optional<Box<Scalar, Dim>> bounds;
 

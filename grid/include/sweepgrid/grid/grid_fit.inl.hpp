@@ -46,21 +46,52 @@ Points<Dim> centres(const std::vector<Box<Scalar, Dim>>& sample) {
   return points;
 }
 
-// Bounds between quantiles, so that a few objects far away do not stretch the grid over empty space.
+/// The space that a grid divides.
 template <int Dim>
-void bounds_of(const Points<Dim>& points, std::array<double, Dim>& lower, std::array<double, Dim>& upper) {
-  lower.fill(0), upper.fill(0);
-  if (points.empty()) return;
+struct Extent {
+  std::array<double, Dim> lower{};
+  std::array<double, Dim> upper{};
+
+  [[nodiscard]] double longest() const {
+    double longest = 0;
+    for (int axis = 0; axis < Dim; ++axis) longest = std::max(longest, upper[axis] - lower[axis]);
+    return longest;
+  }
+
+  [[nodiscard]] bool fits(double cell_size, double cells) const {
+    double total = 1;
+    for (int axis = 0; axis < Dim; ++axis) total *= std::max(1.0, std::ceil((upper[axis] - lower[axis]) / cell_size));
+    // Negated so that NaN and infinity do not fit.
+    return total <= cells && longest() / cell_size < GridSpec<double, Dim>::kMaxCellsPerAxis;
+  }
+};
+
+// Between quantiles, so that objects far away (a part of `tail` on each side) do not stretch the grid over empty space.
+template <int Dim>
+Extent<Dim> extent_of(const Points<Dim>& points, double tail) {
+  Extent<Dim> extent;
+  if (points.empty()) return extent;
   std::vector<double> values(points.size());
   for (int axis = 0; axis < Dim; ++axis) {
     for (std::size_t i = 0; i < points.size(); ++i) values[i] = points[i][axis];
-    const std::size_t skipped = points.size() / 200;
+    const auto skipped = static_cast<std::size_t>(tail * static_cast<double>(points.size()));
     std::sort(values.begin(), values.end());
-    lower[axis] = values[skipped];
-    upper[axis] = values[points.size() - 1 - skipped];
-    const double slack = (upper[axis] - lower[axis]) * 0.02;
-    lower[axis] -= slack, upper[axis] += slack;
+    extent.lower[axis] = values[skipped];
+    extent.upper[axis] = values[points.size() - 1 - skipped];
+    const double slack = (extent.upper[axis] - extent.lower[axis]) * 0.02;
+    extent.lower[axis] -= slack, extent.upper[axis] += slack;
   }
+  return extent;
+}
+
+template <class Scalar, int Dim>
+Extent<Dim> extent_of(const Box<Scalar, Dim>& bounds) {
+  Extent<Dim> extent;
+  for (int axis = 0; axis < Dim; ++axis) {
+    extent.lower[axis] = static_cast<double>(bounds.min[axis]);
+    extent.upper[axis] = static_cast<double>(bounds.max[axis]);
+  }
+  return extent;
 }
 
 // Objects that the average object shares its cell with, were all `objects` placed like the sample. Counting pairs, not
@@ -87,57 +118,42 @@ double companions(const Points<Dim>& points, const std::array<double, Dim>& lowe
   return pairs / sample * (static_cast<double>(objects) / sample);
 }
 
+// The largest size at which an object has at most `population` companions, or nearly twice the width of most boxes.
+template <class Scalar, int Dim>
+double fitting_size(const std::vector<Box<Scalar, Dim>>& sample, const Points<Dim>& points, const Extent<Dim>& extent,
+                    std::size_t objects, int population) {
+  double large = extent.longest();
+  double small = std::clamp(smallest_cell(sample), large / 65536, large);
+  std::vector<std::uint64_t> cells;
+  // Bisection over the exponent: 12 halvings of at most 16 octaves leave the size within 1 %.
+  for (int i = 0; i < 12 && large > 1.01 * small; ++i) {
+    const double size = std::sqrt(small) * std::sqrt(large);  // the product could underflow or overflow
+    (companions<Dim>(points, extent.lower, size, objects, cells) > population ? large : small) = size;
+  }
+  return small;
+}
+
 }  // namespace grid_fit
 
 template <class Scalar, int Dim>
 GridSpec<Scalar, Dim> GridFit<Scalar, Dim>::derive(const std::vector<Box<Scalar, Dim>>& sample,
                                                    std::size_t objects) const {
   const auto points = grid_fit::centres(sample);
-  std::array<double, Dim> lower;
-  std::array<double, Dim> upper;
-  grid_fit::bounds_of<Dim>(points, lower, upper);
-  if (bounds) {
-    for (int axis = 0; axis < Dim; ++axis) {
-      lower[axis] = static_cast<double>(bounds->min[axis]);
-      upper[axis] = static_cast<double>(bounds->max[axis]);
-    }
+  // Empty cells cost memory: no more of them than objects, beyond a floor.
+  const double cells = std::min(static_cast<double>(GridSpec<Scalar, Dim>::kMaxCells),
+                                4096.0 + (cell_size ? 8 : 1) * static_cast<double>(objects));
+  grid_fit::Extent<Dim> extent;
+  for (const double tail : {0.005, 0.05, 0.25}) {
+    extent = bounds ? grid_fit::extent_of(*bounds) : grid_fit::extent_of<Dim>(points, tail);
+    if (!cell_size || extent.fits(*cell_size, cells)) break;
   }
-  double extent = 0;
-  for (int axis = 0; axis < Dim; ++axis) extent = std::max(extent, upper[axis] - lower[axis]);
   // Anything smaller runs into denormals on its way to cells.
   constexpr double kSmallestExtent = std::numeric_limits<double>::min() * 65536;
-  if (!(extent >= kSmallestExtent && std::isfinite(extent))) return {};
-  double size = extent;
-  if (cell_size) {
-    size = *cell_size;
-  } else if (!points.empty()) {
-    double small = std::clamp(grid_fit::smallest_cell(sample), extent / 65536, extent);
-    double large = extent;
-    std::vector<std::uint64_t> cells;
-    // Bisection over the exponent: 12 halvings of at most 16 octaves leave the size within 1 %.
-    for (int i = 0; i < 12 && large > 1.01 * small; ++i) {
-      size = std::sqrt(small) * std::sqrt(large);  // the product could underflow or overflow
-      (grid_fit::companions<Dim>(points, lower, size, objects, cells) > population ? large : small) = size;
-    }
-    size = small;
-  }
-  const auto too_large = [&] {
-    double total = 1;
-    double longest = 0;
-    for (int axis = 0; axis < Dim; ++axis) {
-      const double cells = std::max(1.0, std::ceil((upper[axis] - lower[axis]) / size));
-      total *= cells;
-      longest = std::max(longest, cells);
-    }
-    using Spec = GridSpec<Scalar, Dim>;
-    // Empty cells cost memory: a derived grid has no more of them than objects, beyond a floor.
-    const double limit = cell_size
-                             ? static_cast<double>(Spec::kMaxCells)
-                             : std::min(static_cast<double>(Spec::kMaxCells), 4096.0 + static_cast<double>(objects));
-    return !(total <= limit && longest <= static_cast<double>(Spec::kMaxCellsPerAxis));
-  };
-  while (too_large()) size *= cell_size ? 2 : 1.25;
-  return GridSpec<Scalar, Dim>(lower, upper, size);
+  if (!(extent.longest() >= kSmallestExtent && std::isfinite(extent.longest()))) return {};
+  double size =
+      cell_size ? *cell_size : grid_fit::fitting_size<Scalar, Dim>(sample, points, extent, objects, population);
+  while (!extent.fits(size, cells)) size *= cell_size ? 2 : 1.25;
+  return GridSpec<Scalar, Dim>(extent.lower, extent.upper, size);
 }
 
 }  // namespace sweepgrid

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <sstream>
 #include <stdexcept>
 #include <type_traits>
@@ -37,7 +38,8 @@ class GridSpec {
       : cell_size_(cell_size), scale_(static_cast<Real>(1 / cell_size)) {
     double total = 1;
     for (int axis = 0; axis < Dim; ++axis) {
-      origin_[axis] = static_cast<Real>(lower[axis]);
+      constexpr double kLimit = std::numeric_limits<Real>::max();
+      origin_[axis] = static_cast<Real>(std::clamp(lower[axis], -kLimit, kLimit));
       const double cells = std::max(1.0, std::ceil((upper[axis] - lower[axis]) / cell_size));
       total *= cells;
       if (!(cells <= kMaxCellsPerAxis && total <= kMaxCells)) {
