@@ -1,4 +1,5 @@
-// The `sweepgrid` program. Exit status: 0 all is well, 1 a verification failed, 2 bad usage, file or scene.
+// The `sweepgrid` program. Exit status: 0 all is well, 1 a verification failed or an invariant is broken, 2 bad usage,
+// file or scene.
 
 #include <charconv>
 #include <cmath>

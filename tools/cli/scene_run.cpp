@@ -3,9 +3,13 @@
 #include <chrono>
 #include <limits>
 #include <span>
+#include <string>
 #include <unordered_map>
 
+#include <fmt/format.h>
+
 #include <sweepgrid/engine/engine.hpp>
+#include <sweepgrid/sap/invariant.hpp>
 
 #include "cli/machine_info.hpp"
 #include "cli/progress_bar.hpp"
@@ -43,11 +47,11 @@ class SceneRun {
     result_.scene = source.info();
     ProgressBar progress(result_.scene.name, result_.scene.steps);
     SceneStep ops;
-    bool right = source.next(ops) && do_step(ops);
+    bool right = source.next(ops) && try_step(ops);
     result_.objects_first = engine_.size();
     while (right && result_.steps < step_limit && source.next(ops)) {
       ++result_.steps;
-      right = do_step(ops);
+      right = try_step(ops);
       progress.show(result_.steps);
     }
     if (right && verifier_) verifier_->check_pairs(engine_.pairs());
@@ -55,11 +59,24 @@ class SceneRun {
     result_.stats = engine_.stats();
     result_.peak_bytes = peak_memory();
     if (verifier_) result_.verification = verifier_->result();
+    if (!broken_.empty()) {
+      if (!result_.verification) result_.verification.emplace();
+      result_.verification->first_error = broken_;
+    }
     return std::move(result_);
   }
 
  private:
-  // False when the verifier found an error.
+  // False when the verifier found an error, or the engine found itself broken.
+  bool try_step(SceneStep& ops) {
+    try {
+      return do_step(ops);
+    } catch (const InvariantError& error) {
+      broken_ = fmt::format("step {}: {}", result_.steps, error.what());
+      return false;
+    }
+  }
+
   bool do_step(SceneStep& ops) {
     prepare(ops);
     const Clock::time_point begin = Clock::now();
@@ -130,6 +147,7 @@ class SceneRun {
   std::vector<Box<Scalar, Dim>> inserted_boxes_;
   std::vector<Box<Scalar, Dim>> updated_boxes_;
   std::size_t pairs_ = 0;
+  std::string broken_;  // the invariant, if one is
   SceneResult result_;
 };
 
