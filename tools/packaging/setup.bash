@@ -5,6 +5,9 @@ set -euo pipefail
 readonly started_in=$PWD
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 
+# Where ccache is installed, a second checkout profits from what was compiled in the first.
+export CCACHE_BASEDIR=$PWD CCACHE_NOHASHDIR=1
+
 readonly script_name=tools/${0##*/}
 advice="read the lines above."
 trap 'end_of_script $?' EXIT
