@@ -163,6 +163,7 @@ int run(int argc, char** argv) {
                  "bullet (if built in), batch, segmented, classic, plane; batch2: on 2 threads. "
                  "Ratios are to the first")
       ->delimiter(',')
+      ->allow_extra_args(false)
       ->capture_default_str();
   app.add_option("--rounds", rounds, "Times that all systems run in turn")
       ->check(CLI::PositiveNumber)
