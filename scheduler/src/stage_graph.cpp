@@ -28,7 +28,7 @@ struct Stage {
   StageGraph::Plan plan;
   StageGraph::Body body;
   bool waits = false;
-  std::function<void(std::size_t)> run_bundle;
+  std::function<void(std::size_t)> run_place;
   std::vector<std::uint64_t> costs;
   TaskOrder order;
   TaskTrace records;
@@ -80,11 +80,11 @@ void StageGraph::Impl::run_tasks(Stage& stage) {
   if (stage.costs.empty()) return;
   if (recording) stage.records.assign(stage.costs.size(), {});
   if (arena_executor != nullptr) {
-    stage.order.assign_for_stealing(stage.costs, executor->concurrency());
+    stage.order.assign_for_stealing(stage.costs);
   } else {
     stage.order.assign_descending(stage.costs);
   }
-  executor->for_each(stage.order.bundle_count(), stage.run_bundle);
+  executor->for_each(stage.order.size(), stage.run_place);
 }
 
 void StageGraph::Impl::run_recorded(StageId id, std::uint32_t task) {
@@ -122,13 +122,12 @@ StageGraph::StageId StageGraph::add(std::string name, const std::vector<StageId>
   stage->plan = std::move(plan);
   stage->body = std::move(body);
   stage->waits = !after.empty();
-  stage->run_bundle = [&impl, id, &added = *stage](std::size_t bundle) {
-    for (const std::uint32_t task : added.order.tasks(bundle)) {
-      if (impl.recording) {
-        impl.run_recorded(id, task);
-      } else {
-        added.body(task);
-      }
+  stage->run_place = [&impl, id, &added = *stage](std::size_t place) {
+    const std::uint32_t task = added.order.task(place);
+    if (impl.recording) {
+      impl.run_recorded(id, task);
+    } else {
+      added.body(task);
     }
   };
   if (impl.graph) {
