@@ -89,7 +89,7 @@ TEST_P(SchedulerThreads, ForEachRethrows) {
 TEST_P(SchedulerThreads, AreReallyStarted) { EXPECT_TRUE(runs_together(*executor_, GetParam())); }
 
 TEST_P(SchedulerThreads, StageGraphRunsEveryTaskOnce) {
-  // Counts on both sides of what is sorted and bundled in different ways; costs in no order, with ties and zeros.
+  // Few tasks and many; costs in no order, with ties and zeros.
   for (const std::size_t count : {0, 1, 2, 5, 511, 512, 513, 5000}) {
     StageGraph graph(executor_);
     std::vector<std::atomic<int>> runs(count);
