@@ -75,6 +75,8 @@ class BatchSap final : public SweepAndPrune<Scalar, Dim> {
   void integrate_few(const Ops& ops, Drain& drain);
   void write_updates(int axis, const Ops& ops);
   void sort_in_place(int axis, Drain& drain);
+  /// Moves an endpoint to the place of its new value, while everything else is in order.
+  void move(int axis, End end, Drain& drain);
   void move_right(int axis, std::uint32_t place, End end, Drain& drain);
   void move_left(int axis, std::uint32_t place, End end, Drain& drain);
   void integrate_axis(int axis, const Ops& ops, SweepSets* sets, Drain& drain);

@@ -49,33 +49,29 @@ void BatchSap<Scalar, Dim>::drain(std::span<const Op> ops, std::vector<OverlapDe
   counters.deltas += deltas.size() - deltas_before;
 }
 
+// Trailing endpoint first: a box that moves by more than its width is inverted in flight and so overlaps nothing that
+// it jumps over, which saves a +1 and a -1 for each.
 template <class Scalar, int Dim>
 void BatchSap<Scalar, Dim>::local_sort(const Ops& ops, Drain& drain) {
   ++drain.counters.local_sorts;
   for (int axis = 0; axis < Dim; ++axis) {
-    const End* list = lists_[axis].storage.data();
     for (const auto& [slot, op] : ops.updates) {
-      const Ranks& ranks = ranks_[slot];
       const End new_min = End::min_of(slot, op->box.min[axis]);
       const End new_max = End::max_of(slot, op->box.max[axis]);
-      // The trailing endpoint first: a box that moves by more than its width is inverted in flight and so overlaps
-      // nothing that it jumps over, which saves a +1 and a -1 for each.
-      if (new_min > list[ranks.min[axis]]) {
-        move_right(axis, ranks.min[axis], new_min, drain);
-        if (new_max > list[ranks.max[axis]]) {
-          move_right(axis, ranks.max[axis], new_max, drain);
-        } else {
-          move_left(axis, ranks.max[axis], new_max, drain);
-        }
-      } else {
-        if (new_max > list[ranks.max[axis]]) {
-          move_right(axis, ranks.max[axis], new_max, drain);
-        } else {
-          move_left(axis, ranks.max[axis], new_max, drain);
-        }
-        move_left(axis, ranks.min[axis], new_min, drain);
-      }
+      const bool rightwards = lists_[axis].storage[ranks_[slot].min[axis]] < new_min;
+      move(axis, rightwards ? new_min : new_max, drain);
+      move(axis, rightwards ? new_max : new_min, drain);
     }
+  }
+}
+
+template <class Scalar, int Dim>
+void BatchSap<Scalar, Dim>::move(int axis, End end, Drain& drain) {
+  const std::uint32_t place = rank(axis, end);
+  if (end < lists_[axis].storage[place]) {
+    move_left(axis, place, end, drain);
+  } else {
+    move_right(axis, place, end, drain);
   }
 }
 
