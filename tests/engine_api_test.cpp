@@ -635,6 +635,39 @@ TEST(EngineStats, ASceneThatStaysKeepsItsGrid) {
   EXPECT_EQ(engine.stats().total.regrids, 1u);
 }
 
+/// A key that sometimes cannot be stored.
+struct FragileKey {
+  int number = 0;
+  bool fragile = false;
+
+  FragileKey() = default;
+  explicit FragileKey(int n, bool f = false) : number(n), fragile(f) {}
+  FragileKey(const FragileKey&) = default;
+  FragileKey& operator=(const FragileKey& other) {
+    if (other.fragile) throw std::runtime_error("does not copy");
+    number = other.number;
+    return *this;
+  }
+  friend bool operator==(const FragileKey& a, const FragileKey& b) { return a.number == b.number; }
+  friend bool operator<(const FragileKey& a, const FragileKey& b) { return a.number < b.number; }
+};
+
+struct FragileHash {
+  std::size_t operator()(const FragileKey& key) const { return static_cast<std::size_t>(key.number); }
+};
+
+TEST(EngineKeys, AKeyThatCannotBeStoredLeavesNoObject) {
+  Engine<float, 2, FragileKey, FragileHash> engine(serial());
+  engine.insert(FragileKey(1), square(0, 0));
+  EXPECT_THROW(engine.insert(FragileKey(2, true), square(0, 0)), std::runtime_error);
+  EXPECT_EQ(engine.size(), 1u);
+  EXPECT_FALSE(engine.contains(FragileKey(2)));
+  EXPECT_TRUE(engine.step().begins.empty());
+  engine.insert(FragileKey(2), square(0, 0));
+  EXPECT_EQ(engine.step().begins.size(), 1u);
+  engine.validate();
+}
+
 TEST(EngineStats, ACrowdThatMovesOnlySometimesKeepsItsGrid) {
   Engine2 engine(serial());
   constexpr int kCold = 2000;
