@@ -83,19 +83,5 @@ TEST(ObjectSlots, SlotsDoNotMoveWhileOthersComeAndGo) {
   EXPECT_EQ(slots.object(kept), 77U);
 }
 
-TEST(ObjectSlots, ReserveMakesRoomOnceAndChangesNothingElse) {
-  ObjectSlots slots;
-  std::map<ObjectId, Slot> model;
-  for (ObjectId object = 0; object < 7; ++object) model[object] = slots.acquire(object);
-  slots.reserve(1000);
-  expect_equal(slots, model);
-  const std::size_t bytes = slots.bytes();
-  for (ObjectId object = 7; object < 1000; ++object) model[object] = slots.acquire(object);
-  EXPECT_EQ(slots.bytes(), bytes);
-  slots.reserve(10);
-  EXPECT_EQ(slots.bytes(), bytes);
-  expect_equal(slots, model);
-}
-
 }  // namespace
 }  // namespace sweepgrid

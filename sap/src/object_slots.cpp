@@ -39,12 +39,6 @@ void ObjectSlots::release(ObjectId object) {
   buckets_[hole] = Bucket{};
 }
 
-void ObjectSlots::reserve(std::size_t objects) {
-  objects_.reserve(objects);
-  const std::size_t wanted = std::bit_ceil(std::max<std::size_t>(8, objects * 4 / 3 + 1));
-  if (wanted > buckets_.size()) rehash(wanted);
-}
-
 void ObjectSlots::rehash(std::size_t bucket_count) {
   buckets_.assign(bucket_count, Bucket{});
   shift_ = 32 - std::countr_zero(bucket_count);

@@ -41,8 +41,6 @@ class ObjectSlots {
   /// Slots in use are below this.
   [[nodiscard]] std::size_t slot_bound() const { return objects_.size(); }
 
-  void reserve(std::size_t objects);
-
   void prefetch() const { sweepgrid::prefetch(buckets_.data(), buckets_.size() * sizeof(Bucket)); }
 
   [[nodiscard]] std::size_t bytes() const {

@@ -76,7 +76,7 @@ class SegmentedSap final : public SweepAndPrune<Scalar, Dim> {
   void swapped(int axis, End left, End right, Drain& drain);
 
   void cross_right(int axis, End end, SegmentId from, SegmentId to);
-  void cross_left(int axis, End end, SegmentId from, SegmentId to);
+  void cross_left(int axis, End end, SegmentId to);
   void enter_checkpoint(SegmentId segment, Slot slot);
   void leave_checkpoint(SegmentId segment, Slot slot);
 

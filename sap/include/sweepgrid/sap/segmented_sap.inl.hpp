@@ -258,7 +258,7 @@ void SegmentedSap<Scalar, Dim>::move_left(int axis, Place place, End end, Drain&
       if (other < end) break;
       list.at(place) = other;
       cross_right(axis, other, left, place.segment);
-      cross_left(axis, end, place.segment, left);
+      cross_left(axis, end, left);
       place = {left, list.count(left) - 1};
       swapped<kInFlight>(axis, other, end, drain);
     }
@@ -282,7 +282,7 @@ void SegmentedSap<Scalar, Dim>::move_right(int axis, Place place, End end, Drain
       const End other = list.ends(right)[0];
       if (end < other) break;
       list.at(place) = other;
-      cross_left(axis, other, right, place.segment);
+      cross_left(axis, other, place.segment);
       cross_right(axis, end, place.segment, right);
       place = {right, 0};
       swapped<true>(axis, end, other, drain);
@@ -325,7 +325,7 @@ void SegmentedSap<Scalar, Dim>::cross_right(int axis, End end, SegmentId from, S
 }
 
 template <class Scalar, int Dim>
-void SegmentedSap<Scalar, Dim>::cross_left(int axis, End end, SegmentId /*from*/, SegmentId to) {
+void SegmentedSap<Scalar, Dim>::cross_left(int axis, End end, SegmentId to) {
   segment_of(axis, end) = to;
   if (axis != 0) return;
   if (end.is_max()) {
