@@ -1,12 +1,9 @@
 #include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
 #include <BulletCollision/BroadphaseCollision/btOverlappingPairCallback.h>
 
-#include <chrono>
-#include <vector>
-
 #include "system.hpp"
 
-extern btScalar gDbvtMargin;
+extern btScalar gDbvtMargin;  // NOLINT(cppcoreguidelines-avoid-non-const-global-variables): Bullet's
 
 namespace sweepgrid::bench {
 namespace {
@@ -14,17 +11,16 @@ namespace {
 class EventCounter final : public btOverlappingPairCallback {
  public:
   btBroadphasePair* addOverlappingPair(btBroadphaseProxy*, btBroadphaseProxy*) override {
-    ++begins;
+    ++totals.begins;
     return nullptr;
   }
   void* removeOverlappingPair(btBroadphaseProxy*, btBroadphaseProxy*, btDispatcher*) override {
-    ++ends;
+    ++totals.ends;
     return nullptr;
   }
   void removeOverlappingPairsContainingProxy(btBroadphaseProxy*, btDispatcher*) override {}
 
-  std::uint64_t begins = 0;
-  std::uint64_t ends = 0;
+  EventTotals totals;
 };
 
 btVector3 vector(const FloatBox::Point& point) { return {point[0], point[1], point[2]}; }
@@ -38,35 +34,40 @@ class BulletSystem final : public System {
     broadphase_.getOverlappingPairCache()->setInternalGhostPairCallback(&events_);
   }
 
-  void step(const ScriptStep& step) override {
+  void queue(const ScriptStep& step) override {
     for (const std::uint32_t object : step.erased) broadphase_.destroyProxy(proxies_[object], nullptr);
     for (std::size_t i = 0; i < step.inserted.size(); ++i) {
       const FloatBox& box = step.inserted_boxes[i];
-      proxies_[step.inserted[i]] =
-          broadphase_.createProxy(vector(box.min), vector(box.max), BOX_SHAPE_PROXYTYPE, nullptr, 1, 1, nullptr);
+      btBroadphaseProxy*& proxy = proxies_[step.inserted[i]];
+      proxy = broadphase_.createProxy(vector(box.min), vector(box.max), BOX_SHAPE_PROXYTYPE, &proxy, 1, 1, nullptr);
     }
     for (std::size_t i = 0; i < step.updated.size(); ++i) {
       const FloatBox& box = step.updated_boxes[i];
-      broadphase_.setAabb(proxies_[step.updated[i]], vector(box.min), vector(box.max), nullptr);
+      // Not setAabb(): it keeps the old box when that contains the new one, so that a box that shrinks is not exact.
+      broadphase_.setAabbForceUpdate(proxies_[step.updated[i]], vector(box.min), vector(box.max), nullptr);
     }
-    const auto start = std::chrono::steady_clock::now();
-    broadphase_.calculateOverlappingPairs(nullptr);
-    step_only_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   }
 
-  [[nodiscard]] double step_only_seconds() const override { return step_only_; }
-  [[nodiscard]] std::uint64_t pairs() const override {
-    return static_cast<std::uint64_t>(
-        const_cast<btDbvtBroadphase&>(broadphase_).getOverlappingPairCache()->getNumOverlappingPairs());
+  void step() override { broadphase_.calculateOverlappingPairs(nullptr); }
+
+  [[nodiscard]] std::vector<ObjectPair> pairs() const override {
+    const auto& array = const_cast<btDbvtBroadphase&>(broadphase_).getOverlappingPairCache()->getOverlappingPairArray();
+    std::vector<ObjectPair> pairs;
+    pairs.reserve(static_cast<std::size_t>(array.size()));
+    for (int i = 0; i < array.size(); ++i) pairs.push_back({number(array[i].m_pProxy0), number(array[i].m_pProxy1)});
+    return pairs;
   }
-  [[nodiscard]] std::uint64_t begins() const override { return events_.begins; }
-  [[nodiscard]] std::uint64_t ends() const override { return events_.ends; }
+  [[nodiscard]] std::optional<EventTotals> events() const override { return events_.totals; }
 
  private:
+  // What Bullet keeps for its client is the object's place in proxies_.
+  [[nodiscard]] std::uint32_t number(const btBroadphaseProxy* proxy) const {
+    return static_cast<std::uint32_t>(static_cast<btBroadphaseProxy* const*>(proxy->m_clientObject) - proxies_.data());
+  }
+
   EventCounter events_;
   btDbvtBroadphase broadphase_;
   std::vector<btBroadphaseProxy*> proxies_;  // by object number
-  double step_only_ = 0;
 };
 
 }  // namespace

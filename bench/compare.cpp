@@ -1,191 +1,153 @@
-// The engine in several settings and its peers, in turn on the same scene: what a step costs, and what it costs
+// The engine in several settings and its peers, in turn on the same scenes: what a step costs, and what it costs
 // relative to the first system. `compare --help` tells the rest.
-#include <fmt/format.h>
-
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <chrono>
-#include <cstdint>
-#include <fstream>
-#include <functional>
+#include <cstdio>
 #include <iostream>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
+
+#include "comparison_report.hpp"
+#include "contestants.hpp"
+#include "engine_setting.hpp"
+#include "figures_file.hpp"
+#include "rounds.hpp"
 #include "scene_script.hpp"
-#include "system.hpp"
+#include "standard_scenes.hpp"
 
 namespace sweepgrid::bench {
 namespace {
 
-using Maker = std::function<std::unique_ptr<System>(std::uint32_t objects)>;
+using Json = nlohmann::ordered_json;
 
-/// What one run of one system over one scene gave.
-struct Run {
-  double first_insert_seconds = 0;
-  double ns_per_update = 0;      // whole steps, queueing included, by moved, inserted and erased objects
-  double step_only_seconds = 0;  // sum over steps
-  double p99_over_mean = 0;      // of the steps' times
-  std::uint64_t pairs = 0;
-  std::uint64_t begins = 0;
-  std::uint64_t ends = 0;
-  double bytes_per_object = 0;
+struct Options {
+  std::vector<std::string> scenes;
+  bool large = false;
+  std::string recordings;
+  std::vector<std::string> systems;
+  EngineOptions engine;
+  bool all_sizes = false;
+  int rounds = 3;
+  std::uint64_t steps = 50;
+  std::string json;
 };
 
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return values.empty() ? 0 : values[values.size() / 2];
+// Bullet first, as the one that all ratios are of; then the engine, then the other peers.
+std::vector<std::string> default_systems() {
+  std::vector<std::string> names = {"engine", "engine2", "segmented"};
+  for (const Contestant& peer : peers()) {
+    names.insert(peer.name == "bullet" ? names.begin() : names.end(), peer.name);
+  }
+  return names;
 }
 
-Run run_once(const Maker& maker, const SceneScript& script) {
-  const auto system = maker(script.objects);
-  Run run;
-  std::vector<double> times;
-  double sum = 0;
-  double moved = 0;
-  for (const ScriptStep& step : script.steps) {
-    const auto start = std::chrono::steady_clock::now();
-    system->step(step);
-    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    if (&step == &script.steps.front()) {
-      run.first_insert_seconds = seconds;
-      continue;
+std::string systems_help() {
+  std::string text = "Systems:\n  " + engine_setting_names() + ": the engine, as it comes or with that kind of cell, " +
+                     "on one thread; engine2, batch4, ...: on 2, 4, ... threads\n";
+  for (const Contestant& peer : peers()) text += fmt::format("  {}: {}\n", peer.name, peer.about);
+  return text;
+}
+
+void add_options(CLI::App& app, Options& options) {
+  app.add_option("scenes", options.scenes,
+                 "Recordings or generators, as `sweepgrid run` takes them; the standard scenes when absent");
+  app.add_flag("--large", options.large, "The scenes of up to 1e6 objects as well");
+  app.add_option("--recordings", options.recordings, "The recordings in this folder as well")
+      ->check(CLI::ExistingDirectory);
+  app.add_option("--systems", options.systems, "What runs; ratios are to the first")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->capture_default_str();
+  app.add_flag("--all-sizes", options.all_sizes, "Run peers in scenes, too, where they take minutes");
+  app.add_option("--rounds", options.rounds, "Times that all systems run in turn")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  app.add_option("--steps", options.steps, "Steps of a scene, at most")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  app.add_option("--population", options.engine.population, "Objects per cell of the engine's grid");
+  app.add_option("--segment-capacity", options.engine.segment_capacity, "Endpoints per segment");
+  app.add_flag("--single-calls", options.engine.single_calls, "Tell the engine of one object at a time, not in bulk");
+  app.add_option("--json", options.json, "Also write the figures here");
+  app.footer(systems_help);
+}
+
+std::vector<NamedScene> chosen_scenes(const Options& options) {
+  std::vector<NamedScene> scenes;
+  for (const std::string& scene : options.scenes) scenes.push_back({scene, scene});
+  if (scenes.empty()) scenes = standard_scenes();
+  if (options.large) std::ranges::copy(large_scenes(), std::back_inserter(scenes));
+  if (!options.recordings.empty()) std::ranges::copy(recordings(options.recordings), std::back_inserter(scenes));
+  return scenes;
+}
+
+std::vector<Contestant> chosen_contestants(const Options& options) {
+  std::vector<Contestant> contestants;
+  for (const std::string& name : options.systems) {
+    const auto found = find_contestant(name, options.engine);
+    if (!found) throw CLI::ValidationError("--systems", "there is no system '" + name + "' in this build");
+    contestants.push_back(*found);
+  }
+  return contestants;
+}
+
+/// Prints the scene's table and adds its figures to `json`; false when a system is wrong.
+bool compare(const NamedScene& scene, const std::vector<Contestant>& contestants, const Options& options, Json& json) {
+  const SceneScript script = read_script(scene.scene, options.steps);
+  fmt::print("{} ({})\n", scene.name, scene.scene);
+  std::vector<Contestant> chosen;
+  std::vector<std::string> skipped;
+  for (const Contestant& contestant : contestants) {
+    if (options.all_sizes || script.objects <= contestant.most_objects) {
+      chosen.push_back(contestant);
+    } else {
+      skipped.push_back(contestant.name);
     }
-    times.push_back(seconds);
-    sum += seconds;
-    run.step_only_seconds += system->step_only_seconds();
-    moved += static_cast<double>(step.updated.size() + step.inserted.size() + step.erased.size());
   }
-  run.ns_per_update = moved > 0 ? sum / moved * 1e9 : 0;
-  std::sort(times.begin(), times.end());
-  if (sum > 0) run.p99_over_mean = times[times.size() * 99 / 100] / (sum / static_cast<double>(times.size()));
-  run.pairs = system->pairs();
-  run.begins = system->begins();
-  run.ends = system->ends();
-  run.bytes_per_object = static_cast<double>(system->bytes()) / script.objects;
-  return run;
-}
-
-std::map<std::string, Maker> makers(int population, int segment_capacity) {
-  std::map<std::string, Maker> makers;
-  const std::map<std::string, CellKind> kinds = {{"batch", CellKind::kBatch},
-                                                 {"segmented", CellKind::kSegmented},
-                                                 {"classic", CellKind::kClassic},
-                                                 {"plane", CellKind::kPlane}};
-  for (const auto& [name, kind] : kinds) {
-    for (const int threads : {1, 2, 4, 8}) {
-      Config<float, 3> config;
-      config.cell.kind = kind;
-      config.cell.segment_capacity = segment_capacity;
-      config.cell_population = population;
-      config.threads = threads;
-      makers[threads == 1 ? name : name + std::to_string(threads)] = [config](std::uint32_t objects) {
-        return make_engine(config, objects);
-      };
-    }
+  bool right = true;
+  Json systems = Json::array();
+  if (!chosen.empty()) {
+    const Rounds rounds(chosen, script, options.rounds);
+    print_table(rounds);
+    systems = to_json(rounds);
+    for (std::size_t i = 0; i < rounds.size(); ++i) right = right && rounds.complaints(i).empty();
   }
-#ifdef SWEEPGRID_WITH_BULLET
-  makers["bullet"] = make_bullet;
-#endif
-  return makers;
-}
-
-/// Runs all systems in turn `rounds` times and prints a row for each; false when they disagree on the pairs.
-bool compare(const SceneScript& script, const std::vector<std::string>& names,
-             const std::map<std::string, Maker>& systems, int rounds, nlohmann::json& json) {
-  std::map<std::string, std::vector<Run>> runs;
-  for (int round = 0; round < rounds; ++round) {
-    for (const std::string& name : names) runs[name].push_back(run_once(systems.at(name), script));
-  }
-  fmt::print("{}\n  {:<12} {:>10} {:>18} {:>20} {:>9} {:>10} {:>9} {:>10} {:>8}\n", script.name, "system", "ns/update",
-             fmt::format("x faster, of {}", names[0]), "step only, x faster", "p99/mean", "insert ms", "pairs",
-             "begins", "bytes/ob");
-  bool agree = true;
-  for (const std::string& name : names) {
-    const auto column = [&](auto&& figure) {
-      std::vector<double> values;
-      for (std::size_t i = 0; i < runs[name].size(); ++i) values.push_back(figure(runs[name][i], runs[names[0]][i]));
-      return values;
-    };
-    const auto ratios = column([](const Run& a, const Run& b) { return b.ns_per_update / a.ns_per_update; });
-    const auto step_ratios =
-        column([](const Run& a, const Run& b) { return b.step_only_seconds / a.step_only_seconds; });
-    const auto [low, high] = std::minmax_element(ratios.begin(), ratios.end());
-    const double ns = median(column([](const Run& a, const Run&) { return a.ns_per_update; }));
-    const double p99 = median(column([](const Run& a, const Run&) { return a.p99_over_mean; }));
-    const double first = median(column([](const Run& a, const Run&) { return a.first_insert_seconds * 1e3; }));
-    const Run& last = runs[name].back();
-    agree = agree && last.pairs == runs[names[0]].back().pairs;
-    fmt::print("  {:<12} {:>10.1f} {:>6.2f} ({:.2f}-{:.2f}) {:>20.2f} {:>9.2f} {:>10.1f} {:>9} {:>10} {:>8.0f}\n", name,
-               ns, median(ratios), *low, *high, median(step_ratios), p99, first, last.pairs, last.begins,
-               last.bytes_per_object);
-    json.push_back({{"scene", script.name},
-                    {"system", name},
-                    {"baseline", names[0]},
-                    {"rounds", rounds},
-                    {"ns_per_update", ns},
-                    {"times_faster", median(ratios)},
-                    {"times_faster_min", *low},
-                    {"times_faster_max", *high},
-                    {"step_only_times_faster", median(step_ratios)},
-                    {"p99_over_mean", p99},
-                    {"first_insert_ms", first},
-                    {"pairs", last.pairs},
-                    {"begins", last.begins},
-                    {"ends", last.ends},
-                    {"bytes_per_object", last.bytes_per_object}});
-  }
-  if (!agree) fmt::print("  the systems disagree on the number of pairs\n");
-  std::cout.flush();
-  return agree;
+  for (const std::string& name : skipped) fmt::print("  {}: skipped for its time here; --all-sizes runs it\n", name);
+  std::fflush(stdout);
+  json.push_back({{"name", scene.name},
+                  {"scene", scene.scene},
+                  {"objects", script.live},
+                  {"steps", script.steps.size() - 1},
+                  {"systems", systems},
+                  {"skipped", skipped}});
+  return right;
 }
 
 int run(int argc, char** argv) {
   CLI::App app(
-      "Times broad phases in turn on the same scenes. A ratio is of whole steps in the same round; its median "
-      "and range over the rounds are told.");
-  std::vector<std::string> scenes = {"uniform:n=100000,moving=0.1,churn=0", "uniform:n=100000,moving=1,churn=0",
-                                     "uniform:n=100000,moving=0.1,churn=0.005"};
-#ifdef SWEEPGRID_WITH_BULLET
-  std::vector<std::string> names = {"bullet", "batch", "segmented"};
-#else
-  std::vector<std::string> names = {"batch", "segmented"};
-#endif
-  int rounds = 3;
-  std::uint64_t steps = 50;
-  int population = Config<float, 3>{}.cell_population;
-  int segment_capacity = CellOptions{}.segment_capacity;
-  std::string json_file;
-  app.add_option("scenes", scenes, "Recordings or generators, as `sweepgrid run` takes them")->capture_default_str();
-  app.add_option("--systems", names,
-                 "bullet (if built in), batch, segmented, classic, plane; batch2: on 2 threads. "
-                 "Ratios are to the first")
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->capture_default_str();
-  app.add_option("--rounds", rounds, "Times that all systems run in turn")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  app.add_option("--steps", steps, "Steps of each scene")->check(CLI::PositiveNumber)->capture_default_str();
-  app.add_option("--population", population, "Objects per cell")->capture_default_str();
-  app.add_option("--segment-capacity", segment_capacity, "Endpoints per segment")->capture_default_str();
-  app.add_option("--json", json_file, "Also write the figures here");
-  CLI11_PARSE(app, argc, argv);
-
-  const auto systems = makers(population, segment_capacity);
-  for (const std::string& name : names) {
-    if (systems.contains(name)) continue;
-    std::cerr << "compare: --systems: there is no system '" << name << "' in this build\n";
-    return 2;
+      "Times broad phases in turn on the same scenes. A ratio is of the same round; its median and range over the "
+      "rounds are told. The pairs that each system finds are checked; the exit status is 1 when a system is wrong.");
+  Options options;
+  options.systems = default_systems();
+  add_options(app, options);
+  std::vector<Contestant> contestants;
+  try {
+    app.parse(argc, argv);
+    contestants = chosen_contestants(options);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
   }
-  bool agree = true;
-  nlohmann::json json = nlohmann::json::array();
-  for (const std::string& scene : scenes)
-    agree = compare(read_script(scene, steps), names, systems, rounds, json) && agree;
-  if (!json_file.empty()) std::ofstream(json_file) << json.dump(2) << '\n';
-  return agree ? 0 : 1;
+  bool right = true;
+  Json scenes = Json::array();
+  for (const NamedScene& scene : chosen_scenes(options)) right = compare(scene, contestants, options, scenes) && right;
+  if (!options.json.empty()) {
+    write_figures(options.json, "sweepgrid-compare",
+                  {{"rounds", options.rounds}, {"single_calls", options.engine.single_calls}, {"scenes", scenes}});
+  }
+  return right ? 0 : 1;
 }
 
 }  // namespace

@@ -1,16 +1,22 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
-#include <string>
+#include <optional>
 #include <vector>
 
 #include <sweepgrid/engine/config.hpp>
+#include <sweepgrid/engine/events.hpp>
 #include <sweepgrid/sap/box.hpp>
 
 namespace sweepgrid::bench {
 
 using FloatBox = Box<float, 3>;
+
+/// Numbers of two objects, in any order.
+using ObjectPair = Pair<std::uint32_t>;
 
 /// One step of a scene, with objects numbered densely: number k is always the same object while it lives.
 struct ScriptStep {
@@ -19,32 +25,55 @@ struct ScriptStep {
   std::vector<FloatBox> inserted_boxes;
   std::vector<std::uint32_t> updated;
   std::vector<FloatBox> updated_boxes;
+
+  [[nodiscard]] std::size_t changes() const { return erased.size() + inserted.size() + updated.size(); }
 };
 
-/// A broad phase that is timed: everything from being told what changed to having counted the events.
+struct EventTotals {
+  std::uint64_t begins = 0;
+  std::uint64_t ends = 0;
+
+  friend bool operator==(const EventTotals&, const EventTotals&) = default;
+};
+
+/// A broad phase that is timed. queue() and step() together are a step: from being told what changed to having the
+/// events at hand or, in a system without events, all overlapping pairs.
 class System {
  public:
   virtual ~System() = default;
 
-  /// Applies one step and finds the events.
-  virtual void step(const ScriptStep& step) = 0;
+  /// Tells what changes. A system that has no queue applies it at once.
+  virtual void queue(const ScriptStep& step) = 0;
 
-  /// Seconds of the latest step after queueing was done; what is parallel at all is in here.
-  [[nodiscard]] virtual double step_only_seconds() const = 0;
+  /// Finds what the changes have led to.
+  virtual void step() = 0;
 
-  /// Overlapping pairs now, and events so far.
-  [[nodiscard]] virtual std::uint64_t pairs() const = 0;
-  [[nodiscard]] virtual std::uint64_t begins() const = 0;
-  [[nodiscard]] virtual std::uint64_t ends() const = 0;
+  /// Overlapping pairs as of the latest step, in any order. Not timed.
+  [[nodiscard]] virtual std::vector<ObjectPair> pairs() const = 0;
 
-  /// Bytes by the system's own account; 0 where it keeps none.
-  [[nodiscard]] virtual std::uint64_t bytes() const { return 0; }
+  /// Events so far; absent when the system has none.
+  [[nodiscard]] virtual std::optional<EventTotals> events() const { return std::nullopt; }
+
+  /// Bytes by the system's own account; absent when it keeps none.
+  [[nodiscard]] virtual std::optional<std::uint64_t> counted_bytes() const { return std::nullopt; }
 };
 
-/// `objects`: numbers are below this.
-[[nodiscard]] std::unique_ptr<System> make_engine(const Config<float, 3>& config, std::uint32_t objects);
+/// Makes a system for objects whose numbers are below `objects`.
+using SystemMaker = std::function<std::unique_ptr<System>(std::uint32_t objects)>;
 
-/// btDbvtBroadphase with exact boxes (no margin) and events from the pair cache's callback: the fastest exact setting.
+/// `single_calls`: one call for every object rather than one for all.
+[[nodiscard]] std::unique_ptr<System> make_engine(const Config<float, 3>& config, bool single_calls,
+                                                  std::uint32_t objects);
+
 [[nodiscard]] std::unique_ptr<System> make_bullet(std::uint32_t objects);
+[[nodiscard]] std::unique_ptr<System> make_cgal(std::uint32_t objects);
+
+/// Whether Embree's hierarchy is built anew in each step, or keeps its shape and only grows and shrinks its boxes.
+enum class EmbreeUpkeep { kRebuild, kRefit };
+[[nodiscard]] std::unique_ptr<System> make_embree(EmbreeUpkeep upkeep, std::uint32_t objects);
+
+/// Whether FCL's tree is built anew in each step, or moves the leaves of the objects that moved.
+enum class FclUpkeep { kRebuild, kUpdate };
+[[nodiscard]] std::unique_ptr<System> make_fcl(FclUpkeep upkeep, std::uint32_t objects);
 
 }  // namespace sweepgrid::bench
