@@ -1,6 +1,7 @@
 #include "contestants.hpp"
 
 #include "engine_setting.hpp"
+#include "engine_system.hpp"
 
 namespace sweepgrid::bench {
 
@@ -41,7 +42,7 @@ std::optional<Contestant> find_contestant(std::string_view name, const EngineOpt
   if (options.population) config->cell_population = *options.population;
   if (options.segment_capacity) config->cell.segment_capacity = *options.segment_capacity;
   const auto make = [config = *config, single_calls = options.single_calls](std::uint32_t objects) {
-    return make_engine(config, single_calls, objects);
+    return std::make_unique<EngineSystem>(config, single_calls, objects);
   };
   return Contestant{std::string(name), "the engine", make};
 }

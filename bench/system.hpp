@@ -7,7 +7,6 @@
 #include <optional>
 #include <vector>
 
-#include <sweepgrid/engine/config.hpp>
 #include <sweepgrid/engine/events.hpp>
 #include <sweepgrid/sap/box.hpp>
 
@@ -60,10 +59,6 @@ class System {
 
 /// Makes a system for objects whose numbers are below `objects`.
 using SystemMaker = std::function<std::unique_ptr<System>(std::uint32_t objects)>;
-
-/// `single_calls`: one call for every object rather than one for all.
-[[nodiscard]] std::unique_ptr<System> make_engine(const Config<float, 3>& config, bool single_calls,
-                                                  std::uint32_t objects);
 
 [[nodiscard]] std::unique_ptr<System> make_bullet(std::uint32_t objects);
 [[nodiscard]] std::unique_ptr<System> make_cgal(std::uint32_t objects);
