@@ -34,7 +34,8 @@ struct NamedKind {
   CellOptions options;
 };
 
-constexpr NamedKind kKinds[] = {{"Classic", {CellKind::kClassic}},
+constexpr NamedKind kKinds[] = {{"Rows", {CellKind::kRows}},
+                                {"Classic", {CellKind::kClassic}},
                                 {"Plane", {CellKind::kPlane}},
                                 {"Batch", {CellKind::kBatch}},
                                 {"Segmented4", {CellKind::kSegmented, 4}},

@@ -46,7 +46,8 @@ int probe(const CellOptions& options) {
 
 int main() {
   using sweepgrid::CellKind;
-  for (const sweepgrid::CellOptions& options : {sweepgrid::CellOptions{CellKind::kBatch},
+  for (const sweepgrid::CellOptions& options : {sweepgrid::CellOptions{CellKind::kRows},
+                                                {CellKind::kBatch},
                                                 {CellKind::kSegmented, 4},
                                                 {CellKind::kSegmented, 16},
                                                 {CellKind::kClassic},

@@ -9,7 +9,8 @@ namespace sweepgrid {
 
 /// The kinds of cell as the command line calls them.
 [[nodiscard]] inline std::map<std::string, CellKind> cell_kinds_by_name() {
-  return {{"batch", CellKind::kBatch},
+  return {{"rows", CellKind::kRows},
+          {"batch", CellKind::kBatch},
           {"segmented", CellKind::kSegmented},
           {"classic", CellKind::kClassic},
           {"plane", CellKind::kPlane}};

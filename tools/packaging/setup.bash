@@ -28,7 +28,7 @@ stage() {
 }
 
 readonly build_packages=(
-  g++ cmake ninja-build libtbb-dev libcli11-dev nlohmann-json3-dev libfmt-dev
+  g++ cmake ninja-build libtbb-dev libhwy-dev libcli11-dev nlohmann-json3-dev libfmt-dev
   libboost-iostreams-dev zlib1g-dev liblzma-dev libzstd-dev)
 readonly test_packages=(libgtest-dev libeigen3-dev librapidcheck-dev libbenchmark-dev libbullet-dev)
 

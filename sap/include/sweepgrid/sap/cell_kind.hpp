@@ -8,6 +8,7 @@ namespace sweepgrid {
 
 /// The kinds of cell. All give the same overlaps; they differ in what makes them fast.
 enum class CellKind {
+  kRows,       ///< rows of coordinates, compared with vector instructions: cells of few objects, however they move
   kBatch,      ///< batch insertion and removal (section 3.2.1): most objects move, or many come and go
   kSegmented,  ///< segmented interval lists (section 3.2.2): few objects move, few come and go
   kClassic,    ///< Baraff's sweep and prune: a baseline

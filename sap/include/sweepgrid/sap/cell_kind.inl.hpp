@@ -6,6 +6,7 @@
 #include <sweepgrid/sap/batch_sap.inl.hpp>
 #include <sweepgrid/sap/cell_kind.hpp>
 #include <sweepgrid/sap/classic_sap.hpp>
+#include <sweepgrid/sap/row_cell.hpp>
 #include <sweepgrid/sap/segmented_sap.inl.hpp>
 #include <sweepgrid/sap/sweeping_plane.hpp>
 
@@ -14,6 +15,8 @@ namespace sweepgrid {
 template <class Scalar, int Dim>
 std::unique_ptr<SweepAndPrune<Scalar, Dim>> make_cell(const CellOptions& options) {
   switch (options.kind) {
+    case CellKind::kRows:
+      return std::make_unique<RowCell<Scalar, Dim>>();
     case CellKind::kBatch:
       return std::make_unique<BatchSap<Scalar, Dim>>();
     case CellKind::kSegmented:

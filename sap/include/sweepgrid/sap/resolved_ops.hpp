@@ -4,12 +4,11 @@
 #include <cstddef>
 #include <memory_resource>
 #include <span>
-#include <stdexcept>
-#include <string>
 #include <vector>
 
 #include <sweepgrid/sap/cell_op.hpp>
 #include <sweepgrid/sap/object_slots.hpp>
+#include <sweepgrid/sap/refused_op.hpp>
 
 namespace sweepgrid {
 
@@ -43,21 +42,10 @@ struct ResolvedOps {
     updates.reserve(ops.size());
     for (const auto& op : ops) {
       const Slot slot = slots.find(op.object);
-      if ((slot == ObjectSlots::kAbsent) != (op.kind == OpKind::kInsert)) refuse(op);
+      if ((slot == ObjectSlots::kAbsent) != (op.kind == OpKind::kInsert)) refuse_op(op);
       (op.kind == OpKind::kInsert ? inserts : op.kind == OpKind::kUpdate ? updates : erases).push_back({slot, &op});
     }
     for (Entry& entry : inserts) entry.slot = slots.acquire(entry.op->object);
-  }
-
- private:
-  [[noreturn]] static void refuse(const CellOp<Scalar, Dim>& op) {
-    const bool insert = op.kind == OpKind::kInsert;
-    throw std::invalid_argument("sweepgrid: cell was told to " +
-                                std::string(insert                       ? "insert"
-                                            : op.kind == OpKind::kUpdate ? "update"
-                                                                         : "erase") +
-                                " object " + std::to_string(op.object) +
-                                (insert ? ", which it has already" : ", which it does not have"));
   }
 };
 

@@ -1,0 +1,95 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include <sweepgrid/sap/invariant.hpp>
+#include <sweepgrid/sap/prefetch.hpp>
+#include <sweepgrid/sap/refused_op.hpp>
+#include <sweepgrid/sap/row_block.hpp>
+#include <sweepgrid/sap/row_kernels.hpp>
+#include <sweepgrid/sap/row_scalars.hpp>
+#include <sweepgrid/sap/sweep_and_prune.hpp>
+
+namespace sweepgrid {
+
+/// The cell for few objects: rows of ids, mins and maxes, compared with vector instructions. Nothing is sorted; every
+/// op is compared with all residents, O(m n) for m ops among n objects, and for few objects that is the least work.
+/// With up to four axes, each pair that a drain changes gives exactly one delta. 24 bytes and one allocation; movable.
+template <class Scalar, int Dim>
+class RowCell final : public SweepAndPrune<Scalar, Dim> {
+ public:
+  using Base = SweepAndPrune<Scalar, Dim>;
+  using typename Base::Op;
+  using typename Base::Resident;
+  using typename Base::Visit;
+
+  void drain(std::span<const Op> ops, std::vector<OverlapDelta>& deltas, SapCounters& counters) override {
+    if (ops.empty()) return;
+    const std::size_t done = Kernels::drain(rows_, typename Kernels::Ops(ops), deltas, counters);
+    if (done != ops.size()) refuse_op(ops[done]);
+  }
+
+  void visit(std::span<const Visit> visits, std::vector<OverlapDelta>& deltas, SapCounters& counters) const override {
+    if (visits.empty() || rows_.size() == 0) return;
+    Kernels::visit(rows_, typename Kernels::Visits(visits), deltas, counters);
+  }
+
+  void transfer(std::span<const Op> ops, SapCounters& /*counters*/) override {
+    if (ops.empty()) return;
+    const std::size_t done = Kernels::transfer(rows_, typename Kernels::Ops(ops));
+    if (done != ops.size()) refuse_op(ops[done]);
+  }
+
+  /// The residents, by place.
+  [[nodiscard]] std::span<const ObjectId> ids() const { return {rows_.ids(), rows_.size()}; }
+
+  void prefetch() const override { sweepgrid::prefetch(rows_.data(), rows_.bytes()); }
+  [[nodiscard]] std::size_t size() const override { return rows_.size(); }
+  [[nodiscard]] std::size_t bytes() const override { return rows_.bytes(); }
+  void append_residents(std::vector<Resident>& residents) const override;
+
+  /// S5: each object has one place, and there a box whose mins are not above its maxes.
+  void validate() const override;
+
+ private:
+  using Bits = OrderedBits<Scalar>;
+  using Kernels = std::conditional_t<RowKernels<Bits, Dim>::kCompiled, RowKernels<Bits, Dim>, RowScalars<Bits, Dim>>;
+
+  RowBlock<Bits, Dim> rows_;
+};
+
+template <class Scalar, int Dim>
+void RowCell<Scalar, Dim>::append_residents(std::vector<Resident>& residents) const {
+  for (std::uint32_t place = 0; place < rows_.size(); ++place) {
+    Resident& resident = residents.emplace_back();
+    resident.object = rows_.ids()[place];
+    for (int axis = 0; axis < Dim; ++axis) {
+      resident.box.min[axis] = rows_.bits(axis, place);
+      resident.box.max[axis] = rows_.bits(Dim + axis, place);
+    }
+  }
+}
+
+template <class Scalar, int Dim>
+void RowCell<Scalar, Dim>::validate() const {
+  std::vector<ObjectId> ids(rows_.ids(), rows_.ids() + rows_.size());
+  std::sort(ids.begin(), ids.end());
+  const auto twin = std::adjacent_find(ids.begin(), ids.end());
+  require_invariant(twin == ids.end(), "S5", [&] { return "object " + std::to_string(*twin) + " has two places"; });
+  for (std::uint32_t place = 0; place < rows_.size(); ++place) {
+    for (int axis = 0; axis < Dim; ++axis) {
+      require_invariant(rows_.bits(axis, place) <= rows_.bits(Dim + axis, place), "S5", [&] {
+        return "object " + std::to_string(rows_.ids()[place]) + " has a min above its max on axis " +
+               std::to_string(axis);
+      });
+    }
+  }
+}
+
+}  // namespace sweepgrid

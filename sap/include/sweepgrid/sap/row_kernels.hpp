@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include <sweepgrid/sap/overlap_delta.hpp>
+#include <sweepgrid/sap/row_block.hpp>
+#include <sweepgrid/sap/row_views.hpp>
+#include <sweepgrid/sap/sap_counters.hpp>
+
+namespace sweepgrid {
+
+/// What RowCell does with vector instructions: compiled once for each instruction set, chosen by what the machine has.
+/// The calls mean what those of SweepAndPrune mean. drain() and transfer() return the index of an op that they refuse,
+/// and have then changed nothing, or the number of ops.
+template <class Bits, int Dim>
+struct RowKernels {
+  using Block = RowBlock<Bits, Dim>;
+  using Ops = OpViews<Bits, Dim>;
+  using Visits = VisitViews<Bits, Dim>;
+
+  /// Others do not exist: see RowScalars.
+  static constexpr bool kCompiled =
+      (std::is_same_v<Bits, std::uint32_t> || std::is_same_v<Bits, std::uint64_t>)&&Dim >= 1 && Dim <= 4;
+
+  static std::size_t drain(Block& block, Ops ops, std::vector<OverlapDelta>& deltas, SapCounters& counters);
+  static std::size_t transfer(Block& block, Ops ops);
+  static void visit(const Block& block, Visits visits, std::vector<OverlapDelta>& deltas, SapCounters& counters);
+};
+
+/// The instruction sets that this machine has kernels for, best first. For tests.
+[[nodiscard]] std::vector<std::string> row_kernel_targets();
+
+/// Has all later calls use the kernels for one of row_kernel_targets(), or the best again if `target` is empty. Throws
+/// std::invalid_argument for any other name. For tests; not beside any other call.
+void use_row_kernel_target(const std::string& target);
+
+}  // namespace sweepgrid
