@@ -6,12 +6,6 @@
 
 namespace sweepgrid::bench {
 
-Spread spread(std::vector<double> values) {
-  if (values.empty()) return {};
-  std::sort(values.begin(), values.end());
-  return {values[values.size() / 2], values.front(), values.back()};
-}
-
 Rounds::Rounds(const std::vector<Contestant>& contestants, const SceneScript& script, int rounds)
     : runs_(contestants.size()), complaints_(contestants.size()) {
   const SceneTruth truth(script);

@@ -8,18 +8,9 @@
 #include "contestants.hpp"
 #include "run.hpp"
 #include "scene_script.hpp"
+#include "spread.hpp"
 
 namespace sweepgrid::bench {
-
-/// A figure over all rounds.
-struct Spread {
-  double median = 0;
-  double low = 0;
-  double high = 0;
-};
-
-/// Of a sample; all 0 for none.
-[[nodiscard]] Spread spread(std::vector<double> values);
 
 /// Several contestants over one script, in turn, round after round. Ratios are of runs in the same round, because the
 /// machine's speed differs more from one round to the next than within one.
