@@ -1,12 +1,12 @@
-#include <sweepgrid/grid/grid.inl.hpp>
 #include <sweepgrid/grid/grid_fit.inl.hpp>
+#include <sweepgrid/grid/levels.inl.hpp>
 
 namespace sweepgrid {
 
-template class Grid<float, 2>;
-template class Grid<float, 3>;
-template class Grid<double, 2>;
-template class Grid<double, 3>;
+template class Levels<float, 2>;
+template class Levels<float, 3>;
+template class Levels<double, 2>;
+template class Levels<double, 3>;
 
 template struct GridFit<float, 2>;
 template struct GridFit<float, 3>;

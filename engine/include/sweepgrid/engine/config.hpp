@@ -3,25 +3,34 @@
 #include <memory>
 #include <optional>
 
-#include <sweepgrid/sap/box.hpp>
 #include <sweepgrid/sap/cell_kind.hpp>
 #include <sweepgrid/scheduler/executor.hpp>
 
 namespace sweepgrid {
+
+/// How the overlap deltas of cells become events. A pair may overlap in several cells.
+enum class Reduction {
+  /// The one cell that holds the lower corner of a pair's intersection reports it, judging by the boxes alone; no set
+  /// of pairs is kept. Grids of several cell sizes serve objects of different sizes.
+  kSingleReporter,
+  /// A table counts for every pair the cells in which it overlaps (the paper, section 3.3). One grid, bounded where the
+  /// scene was when it was derived, and rebuilt within one step when that no longer fits.
+  kWitnessCounts,
+};
 
 /// Settings of an engine. Events do not depend on any of them; time and memory do. The defaults suit most scenes.
 template <class Scalar, int Dim>
 struct Config {
   /// Kind of the cells and its parameters.
   CellOptions cell;
-  /// Edge of a grid cell in world units, positive and finite; absent: derived from the boxes. With derived bounds it is
-  /// doubled while the grid would have more than 4096 cells and eight for each object.
+  /// Edge of the finest cells in world units, positive and finite; absent: derived from the boxes, and derived anew
+  /// when the scene changes. With witness counts, doubled while the grid would have more than 2^24 cells.
   std::optional<double> cell_size;
-  /// The space that the grid divides, finite; absent: derived from the boxes. Objects outside are kept exactly in the
-  /// cells at its border.
-  std::optional<Box<Scalar, Dim>> bounds;
-  /// Objects per occupied cell that a derived cell size aims at, at least 1.
-  int cell_population = 48;
+  /// Objects per cell that a derived cell size aims at (centres of boxes beside the object's own), at least 1; absent:
+  /// what is fastest for the kind of cells.
+  std::optional<int> cell_population;
+  /// How deltas become events.
+  Reduction reduction = Reduction::kSingleReporter;
   /// Where the step runs; absent: `threads` workers of the engine's own (0: as many as the machine has; 1: none).
   std::shared_ptr<Executor> executor;
   int threads = 0;

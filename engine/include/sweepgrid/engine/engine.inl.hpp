@@ -22,11 +22,12 @@ void SWEEPGRID_ENGINE::add_order_stages() {
   const auto order = graph.add(
       "order", {core_.last_stage()},
       [this](std::vector<std::uint64_t>& costs) {
-        for (Sorter& sorter : sorters_) sorter.reset(core_.shards());
-        for (std::size_t shard = 0; shard < core_.shards(); ++shard) costs.push_back(core_.ends(shard).size() + 1);
-        for (std::size_t shard = 0; shard < core_.shards(); ++shard) costs.push_back(core_.begins(shard).size() + 1);
+        const auto workers = static_cast<std::size_t>(core_.executor().concurrency());
+        const std::size_t shards = std::min(core_.lists(), workers == 1 ? 1 : 4 * workers);
+        for (Sorter& sorter : sorters_) sorter.reset(shards);
+        costs.assign(kLists * shards, 1);
       },
-      [this](std::size_t task) { sort_shard(task / core_.shards(), task % core_.shards()); });
+      [this](std::size_t task) { sort_shard(task % kLists, task / kLists); });
   graph.add(
       "merge", {order},
       [this](std::vector<std::uint64_t>& costs) {
@@ -43,7 +44,10 @@ void SWEEPGRID_ENGINE::add_order_stages() {
 SWEEPGRID_ENGINE_TEMPLATE
 void SWEEPGRID_ENGINE::sort_shard(std::size_t list, std::size_t shard) {
   auto& out = sorters_[list].shard(shard);
-  for (const PairKey pair : list == kEnds ? core_.ends(shard) : core_.begins(shard)) out.push_back(keys_of(pair));
+  const std::size_t shards = sorters_[list].shards();
+  for (std::size_t i = shard * core_.lists() / shards; i < (shard + 1) * core_.lists() / shards; ++i) {
+    for (const PairKey pair : list == kEnds ? core_.ends(i) : core_.begins(i)) out.push_back(keys_of(pair));
+  }
   sorters_[list].sort_shard(shard);
 }
 
@@ -147,6 +151,7 @@ const Events<Key>& SWEEPGRID_ENGINE::step() {
     events_.begins.clear();
   }
   core_.step();
+  core_.count_events(events_.begins.size(), events_.ends.size());
   return events_;
 }
 

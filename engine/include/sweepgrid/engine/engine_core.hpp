@@ -10,10 +10,12 @@
 
 #include <sweepgrid/engine/config.hpp>
 #include <sweepgrid/engine/object_table.hpp>
+#include <sweepgrid/engine/regrid.hpp>
+#include <sweepgrid/engine/reporter.hpp>
 #include <sweepgrid/engine/stats.hpp>
 #include <sweepgrid/engine/witness_table.hpp>
-#include <sweepgrid/grid/grid.hpp>
 #include <sweepgrid/grid/grid_fit.hpp>
+#include <sweepgrid/grid/levels.hpp>
 #include <sweepgrid/scheduler/stage_graph.hpp>
 
 namespace sweepgrid {
@@ -38,15 +40,22 @@ class EngineCore {
   [[nodiscard]] StageGraph& graph() { return *graph_; }
   [[nodiscard]] const StageGraph& graph() const { return *graph_; }
   [[nodiscard]] StageGraph::StageId last_stage() const { return reduce_stage_; }
-  [[nodiscard]] const Executor& executor() const { return *executor_; }
+  [[nodiscard]] Executor& executor() const { return *executor_; }
 
   /// Runs the graph on what was queued, then lets erased ids be reused.
   void step();
 
-  [[nodiscard]] std::size_t shards() const { return shards_.size(); }
-  /// Of the latest step, by shard, in no order.
-  [[nodiscard]] std::span<const PairKey> begins(std::size_t shard) const { return shards_[shard].begins; }
-  [[nodiscard]] std::span<const PairKey> ends(std::size_t shard) const { return shards_[shard].ends; }
+  /// The events of the latest step come in lists, in no order; with single reporters a list may name a pair twice.
+  [[nodiscard]] std::size_t lists() const { return counting() ? shards_.size() : tasks_.size(); }
+  [[nodiscard]] std::span<const PairKey> begins(std::size_t list) const {
+    return counting() ? shards_[list].begins : tasks_[list].begins;
+  }
+  [[nodiscard]] std::span<const PairKey> ends(std::size_t list) const {
+    return counting() ? shards_[list].ends : tasks_[list].ends;
+  }
+  /// To be told the numbers of events once they are free of doubles.
+  void count_events(std::size_t begins, std::size_t ends);
+
   [[nodiscard]] std::vector<PairKey> pairs() const;
 
   void validate() const;
@@ -54,24 +63,41 @@ class EngineCore {
 
  private:
   using GridType = Grid<Scalar, Dim>;
+  using LevelsType = Levels<Scalar, Dim>;
+  using Record = typename Objects::Record;
+  static constexpr double kMaxCells = double{1 << 24};  // with witness counts
 
   /// A block of objects as it is routed.
   struct RouteBlock {
     std::uint32_t first_granule = 0;
     std::uint32_t last_granule = 0;
     StepCounters counters;
-    std::int64_t outside_change = 0;
     std::vector<ObjectId> retired;
+    std::vector<std::pair<ObjectId, GridIndex>> relocated;  // at the end of the step
   };
 
-  /// Active cells that one task drains, and the deltas that come of it, sorted by shard.
+  /// A shard of a grid with queued calls, and how its active cells are cut into tasks.
+  struct GatherTask {
+    GridIndex grid;
+    std::size_t shard;
+    std::vector<std::size_t> cuts;     // where a task's cells end
+    std::vector<std::uint64_t> costs;  // of the tasks
+    double met = 0;                    // residents that ops met, summed over ops
+    std::uint64_t ops = 0;
+  };
+
+  /// Active cells that one task drains, and what comes of it.
   struct DrainTask {
-    std::size_t group = 0;
+    GridIndex grid = 0;
+    std::size_t shard = 0;
     std::span<const typename GridType::ActiveCell> cells;
-    std::vector<OverlapDelta> deltas;
+    DrainOutput<Scalar, Dim> out;
+    // With single reporters.
+    std::vector<PairKey> begins;
+    std::vector<PairKey> ends;
+    // With witness counts: deltas sorted by shard.
     std::vector<OverlapDelta> by_shard;
     std::vector<std::size_t> shard_end;
-    SapCounters counters;
   };
 
   struct Shard {
@@ -80,42 +106,71 @@ class EngineCore {
     std::vector<PairKey> ends;
   };
 
+  [[nodiscard]] bool counting() const { return config_.reduction == Reduction::kWitnessCounts; }
+
   void plan_route(std::vector<std::uint64_t>& costs);
+  [[nodiscard]] bool most_changed(const std::vector<std::uint32_t>& granules) const;
   void route(std::size_t block);
+  void route_granule(std::size_t block, std::uint32_t granule);
   void route_object(std::size_t block, ObjectId object, RouteBlock& out);
+  void route_changed(std::size_t block, ObjectId object, RouteBlock& out);
+  void route_moved(std::size_t block, ObjectId object, RouteBlock& out);
+  void show(std::size_t block, ObjectId object, GridIndex home, const BoxType* before, const BoxType* after);
+  void relocate(std::size_t block, ObjectId object, RouteBlock& out);
   void plan_gather(std::vector<std::uint64_t>& costs);
+  void gather(std::size_t task);
   void plan_drain(std::vector<std::uint64_t>& costs);
   void drain(std::size_t task);
+  void report(DrainTask& task) const;
   void partition(DrainTask& task) const;
   void plan_reduce(std::vector<std::uint64_t>& costs);
   void reduce(std::size_t shard);
   void finish_step();
 
-  [[nodiscard]] bool fixed_grid() const { return config_.cell_size && config_.bounds; }
-  [[nodiscard]] bool outgrown() const;
-  [[nodiscard]] bool crowded() const;
-  [[nodiscard]] GridSpec<Scalar, Dim> derive_grid() const;
   void follow_scene();
+  void follow_with_counts();
+  void follow_with_levels();
+  void start_family(double cell_size, const std::array<double, Dim>& origin, const std::vector<BoxType>& sample);
+  [[nodiscard]] typename GridFit<Scalar, Dim>::Result fit(const std::vector<BoxType>& sample) const;
+  [[nodiscard]] std::vector<BoxType> sample(std::size_t count) const;
+  [[nodiscard]] std::size_t grid_shards() const;
+  [[nodiscard]] int population() const;
+  void plan_relocation();
+
   [[nodiscard]] std::size_t shard_of(PairKey pair) const { return WitnessTable::hash(pair) >> shard_shift_; }
+  [[nodiscard]] bool relocating(std::uint32_t granule) const {
+    return granule >= relocation_.first && granule < relocation_.end;
+  }
   void validate_residents() const;
   void validate_witnesses() const;
+  void validate_pairs() const;
+  template <class Visit>
+  void for_each_pair(Visit&& visit) const;
+  [[nodiscard]] const BoxType& stepped_box(ObjectId object) const;
+  [[nodiscard]] bool meet_in(PairKey pair, GridIndex grid, std::uint64_t cell) const;
 
   ConfigType config_;
   std::shared_ptr<Executor> executor_;
   Objects objects_;
-  GridType grid_;
+  LevelsType levels_;
+  Regrid regrid_;
 
-  /// What the grid was derived from, and what would make it worth deriving anew.
+  /// Granules whose objects move to their homes in this step.
+  struct Relocation {
+    bool wanted = false;
+    std::uint32_t first = 0;
+    std::uint32_t end = 0;
+  } relocation_;
+
   bool gridded_ = false;
-  std::size_t objects_at_fit_ = 0;
-  std::int64_t outside_ = 0;
-  std::int64_t outside_at_fit_ = 0;
-  double crowding_ = 0;         // residents that the average op of the latest step met in its cell
-  double crowding_at_fit_ = 0;  // the same when the grid was found to be as good as it gets
-
-  bool idle_ = true;         // the latest step had nothing to do
-  bool regridding_ = false;  // this step inserts every object into a new grid
+  std::size_t objects_at_step_ = 0;  // how many there were when the latest step began
+  std::uint64_t last_changed_ = 0;   // ops of the latest step that had any
+  std::uint64_t pairs_ = 0;          // by the events
+  bool idle_ = true;                 // the latest step had nothing to do
+  bool regridding_ = false;          // with witness counts: this step inserts every object into a new grid
   std::vector<RouteBlock> blocks_;
+  std::vector<GatherTask> gathers_;
+  std::uint64_t task_cost_ = 1;
   std::vector<DrainTask> tasks_;
   std::vector<Shard> shards_;
   int shard_shift_ = 64;

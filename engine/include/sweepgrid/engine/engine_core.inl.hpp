@@ -1,43 +1,41 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
+#include <cstring>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
 #include <sweepgrid/engine/engine_core.hpp>
+#include <sweepgrid/engine/follow_scene.inl.hpp>
 #include <sweepgrid/engine/validate.inl.hpp>
-#include <sweepgrid/grid/grid.inl.hpp>
 #include <sweepgrid/grid/grid_fit.inl.hpp>
+#include <sweepgrid/grid/levels.inl.hpp>
 #include <sweepgrid/sap/cell_kind.inl.hpp>
 
 namespace sweepgrid {
 
 namespace engine_core {
 
-/// Tasks per worker that a stage is cut into: enough to balance, few enough to cost nothing.
-inline constexpr std::size_t kTasksPerWorker = 8;
-/// Estimated cost (about an endpoint's visit each) below which another task is not worth its spawn.
-inline constexpr std::uint64_t kSmallestTask = 4096;
+/// Tasks of a stage for each worker, so that the slowest does not keep the others waiting.
+inline constexpr std::size_t kTasksPerWorker = 16;
+/// Estimated cost, in about nanoseconds, below which a task is not worth its own start.
+inline constexpr std::uint64_t kSmallestTask = 8192;
+
+/// Share of objects that must have changed for cells to ask for boxes instead of being told.
+inline constexpr double kDenseShare = 0.35;
 
 template <class Scalar, int Dim>
 void require_valid(const Config<Scalar, Dim>& config) {
   const auto refuse = [](const std::string& what) { throw std::invalid_argument("sweepgrid: Config::" + what); };
-  if (config.cell_population < 1) {
-    refuse("cell_population is " + std::to_string(config.cell_population) + ", but must be at least 1");
+  if (config.cell_population && *config.cell_population < 1) {
+    refuse("cell_population is " + std::to_string(*config.cell_population) + ", but must be at least 1");
   }
   if (config.cell_size && !(*config.cell_size > 0 && std::isfinite(*config.cell_size))) {
     refuse("cell_size is " + std::to_string(*config.cell_size) + ", but must be positive and finite");
-  }
-  if (config.bounds) {
-    bool good = config.bounds->valid();
-    for (int axis = 0; axis < Dim; ++axis) {
-      good = good && std::isfinite(static_cast<double>(config.bounds->min[axis])) &&
-             std::isfinite(static_cast<double>(config.bounds->max[axis]));
-    }
-    if (!good) refuse("bounds must be finite with min <= max on every axis");
   }
   if (config.threads < 0) refuse("threads is " + std::to_string(config.threads) + ", but must not be negative");
   static_cast<void>(make_cell<Scalar, Dim>(config.cell));  // refuses bad cell options
@@ -50,9 +48,11 @@ EngineCore<Scalar, Dim>::EngineCore(ConfigType config) : config_(std::move(confi
   engine_core::require_valid(config_);
   executor_ = config_.executor ? config_.executor : make_executor(config_.threads);
   const auto workers = static_cast<std::size_t>(executor_->concurrency());
-  const std::size_t shards = workers == 1 ? 1 : std::bit_ceil(std::min<std::size_t>(4 * workers, 1024));
-  shards_.resize(std::max<std::size_t>(2, shards));
-  shard_shift_ = 64 - std::countr_zero(shards_.size());
+  if (counting()) {
+    const std::size_t shards = workers == 1 ? 1 : std::bit_ceil(std::min<std::size_t>(4 * workers, 1024));
+    shards_.resize(std::max<std::size_t>(2, shards));
+    shard_shift_ = 64 - std::countr_zero(shards_.size());
+  }
   graph_ = std::make_unique<StageGraph>(executor_);
   const auto stage = [this](const char* name, const std::vector<StageGraph::StageId>& after,
                             void (EngineCore::*plan)(std::vector<std::uint64_t>&),
@@ -62,18 +62,12 @@ EngineCore<Scalar, Dim>::EngineCore(ConfigType config) : config_(std::move(confi
         [this, body](std::size_t task) { (this->*body)(task); });
   };
   const auto routed = stage("route", {}, &EngineCore::plan_route, &EngineCore::route);
-  const auto gathered = graph_->add(
-      "gather", {routed}, [this](std::vector<std::uint64_t>& costs) { plan_gather(costs); },
-      [this](std::size_t group) { grid_.gather(group); });
+  const auto gathered = stage("gather", {routed}, &EngineCore::plan_gather, &EngineCore::gather);
   const auto drained = stage("drain", {gathered}, &EngineCore::plan_drain, &EngineCore::drain);
+  reduce_stage_ = drained;
   // A barrier on purpose: a migrating pair yields -1 in the cell it leaves and +1 in the cell it enters, in either
   // order. Summed after all cells are drained this is 0; summed as cells finish it is a false end and begin.
-  reduce_stage_ = stage("reduce", {drained}, &EngineCore::plan_reduce, &EngineCore::reduce);
-  if (fixed_grid()) {
-    const auto extent = grid_fit::extent_of(*config_.bounds);
-    grid_.reset(GridSpec<Scalar, Dim>(extent.lower, extent.upper, *config_.cell_size), config_.cell);
-    gridded_ = true;
-  }
+  if (counting()) reduce_stage_ = stage("reduce", {drained}, &EngineCore::plan_reduce, &EngineCore::reduce);
 }
 
 template <class Scalar, int Dim>
@@ -88,9 +82,9 @@ void EngineCore<Scalar, Dim>::step() {
     graph_->run();
     finish_step();
   } else {
+    tasks_.clear();
     for (Shard& shard : shards_) shard.begins.clear(), shard.ends.clear();
   }
-  total_ += counters_;
   ++steps_;
 }
 
@@ -103,8 +97,9 @@ void EngineCore<Scalar, Dim>::plan_route(std::vector<std::uint64_t>& costs) {
   const std::uint32_t granules = objects_.granules();
   std::vector<std::uint32_t> marked;
   for (std::uint32_t granule = 0; granule < granules; ++granule) {
-    if (regridding_ || objects_.granule_marked(granule)) marked.push_back(granule);
+    if (regridding_ || relocating(granule) || objects_.granule_marked(granule)) marked.push_back(granule);
   }
+  const bool dense = config_.cell.kind == CellKind::kRows && !regridding_ && most_changed(marked);
   const auto workers = static_cast<std::size_t>(executor_->concurrency());
   const bool small = workers == 1 || marked.size() < 8;
   const std::size_t wanted = small ? 1 : std::min(marked.size(), engine_core::kTasksPerWorker * workers);
@@ -116,120 +111,261 @@ void EngineCore<Scalar, Dim>::plan_route(std::vector<std::uint64_t>& costs) {
     block.first_granule = marked[first];
     block.last_granule = marked[end - 1];
     block.counters = StepCounters{};
-    block.outside_change = 0;
     block.retired.clear();
+    block.relocated.clear();
     costs.push_back(end - first);
   }
-  grid_.begin_step(wanted, small ? 1 : std::bit_ceil(engine_core::kTasksPerWorker * workers));
+  for (const GridIndex grid : levels_.live()) levels_.grid(grid).begin_step(wanted, dense);
+}
+
+// Judged by every 16th of the granules.
+template <class Scalar, int Dim>
+bool EngineCore<Scalar, Dim>::most_changed(const std::vector<std::uint32_t>& granules) const {
+  if (4 * granules.size() < objects_.granules()) return false;
+  std::size_t seen = 0;
+  std::size_t changed = 0;
+  for (std::size_t i = 0; i < granules.size(); i += 16) {
+    const ObjectId first = granules[i] * Objects::kGranule;
+    const ObjectId end = std::min(objects_.bound() - first, Objects::kGranule) + first;
+    for (ObjectId object = first; object < end; ++object) {
+      changed += (objects_.state(object) & Objects::kUpdated) != 0 ? 1 : 0;
+    }
+    seen += end - first;
+  }
+  return static_cast<double>(changed) > engine_core::kDenseShare * static_cast<double>(seen);
 }
 
 template <class Scalar, int Dim>
 void EngineCore<Scalar, Dim>::route(std::size_t block) {
-  RouteBlock& out = blocks_[block];
+  const RouteBlock& out = blocks_[block];
   for (std::uint32_t granule = out.first_granule; granule <= out.last_granule; ++granule) {
-    if (!regridding_ && !objects_.granule_marked(granule)) continue;
-    objects_.unmark_granule(granule);
-    const ObjectId first = granule * Objects::kGranule;
-    const ObjectId end = std::min(objects_.bound() - first, Objects::kGranule) + first;
-    for (ObjectId object = first; object < end; ++object) {
-      const std::uint8_t state = objects_.state(object);
-      if ((state & Objects::kQueued) != 0 || (regridding_ && state != 0)) route_object(block, object, out);
+    if (!regridding_ && !relocating(granule) && !objects_.granule_marked(granule)) continue;
+    route_granule(block, granule);
+  }
+}
+
+template <class Scalar, int Dim>
+void EngineCore<Scalar, Dim>::route_granule(std::size_t block, std::uint32_t granule) {
+  objects_.unmark_granule(granule);
+  const ObjectId first = granule * Objects::kGranule;
+  const ObjectId end = std::min(objects_.bound() - first, Objects::kGranule) + first;
+  const bool all = regridding_ || relocating(granule);
+  constexpr std::uint64_t kAnyQueued = 0x0101010101010101U * Objects::kQueued;
+  const std::uint8_t* const states = &objects_.state(first);  // a granule is contiguous
+  for (ObjectId object = first; object < end; ++object) {
+    if (!all && object % 8 == 0 && object + 8 <= end) {
+      std::uint64_t eight;
+      std::memcpy(&eight, states + (object - first), sizeof(eight));
+      if ((eight & kAnyQueued) == 0) {
+        object += 7;
+        continue;
+      }
     }
+    const std::uint8_t state = states[object - first];
+    if ((state & Objects::kQueued) != 0 || (all && state != 0)) route_object(block, object, blocks_[block]);
   }
 }
 
 template <class Scalar, int Dim>
 void EngineCore<Scalar, Dim>::route_object(std::size_t block, ObjectId object, RouteBlock& out) {
   std::uint8_t& state = objects_.state(object);
-  auto& record = objects_.record(object);
-  const bool was_inside_grid = !regridding_ && (state & Objects::kInserted) == 0;
-  if ((state & Objects::kOutside) != 0 && !regridding_) --out.outside_change;
-  if ((state & Objects::kErased) != 0) {
-    if (was_inside_grid) grid_.route_erase(block, object, record.range);
-    out.counters.erases += (state & Objects::kInserted) == 0 ? 1 : 0;
-    objects_.retire(object);
-    out.retired.push_back(object);
-    return;
+  if ((state & Objects::kQueued) != 0) {
+    const bool never_seen = (state & Objects::kInserted) != 0 && (state & Objects::kErased) != 0;
+    if (!never_seen) route_changed(block, object, out);
+    if ((state & Objects::kErased) != 0) {
+      objects_.retire(object);
+      out.retired.push_back(object);
+      return;
+    }
+    state = Objects::kLive;
+  } else if (regridding_) {
+    levels_.grid(objects_.record(object).grid).route_insert(block, object, objects_.record(object).box);
   }
-  out.counters.inserts += (state & Objects::kInserted) != 0 ? 1 : 0;
-  out.counters.updates += (state & (Objects::kInserted | Objects::kUpdated)) == Objects::kUpdated ? 1 : 0;
-  if (was_inside_grid) {
-    out.counters.migrations += grid_.route_update(block, object, record.box, record.range) ? 1 : 0;
-  } else {
-    grid_.route_insert(block, object, record.box, record.range);
-  }
-  const bool outside = grid_.spec().outside(record.box);
-  out.outside_change += outside ? 1 : 0;
-  state = static_cast<std::uint8_t>(Objects::kLive | (outside ? Objects::kOutside : 0));
+  if (relocating(object / Objects::kGranule)) relocate(block, object, out);
 }
 
-// ---- gather: each cell's ops together, by group of cells
+template <class Scalar, int Dim>
+void EngineCore<Scalar, Dim>::route_changed(std::size_t block, ObjectId object, RouteBlock& out) {
+  Record& record = objects_.record(object);
+  record.change = objects_.state(object);
+  record.changed_at = steps_ + 1;
+  record.grid_before = record.grid;
+  if ((record.change & Objects::kInserted) != 0) {
+    ++out.counters.inserts;
+    record.grid = levels_.home(LevelsType::width(record.box));
+    levels_.grid(record.grid).route_insert(block, object, record.box);
+    show(block, object, record.grid, nullptr, &record.box);
+  } else if ((record.change & Objects::kErased) != 0) {
+    ++out.counters.erases;
+    if (!regridding_) levels_.grid(record.grid).route_erase(block, object, record.before);
+    show(block, object, record.grid, &record.before, nullptr);
+  } else {
+    ++out.counters.updates;
+    route_moved(block, object, out);
+  }
+}
+
+template <class Scalar, int Dim>
+void EngineCore<Scalar, Dim>::route_moved(std::size_t block, ObjectId object, RouteBlock& out) {
+  Record& record = objects_.record(object);
+  const double width = LevelsType::width(record.box);
+  GridType& grid = levels_.grid(record.grid);
+  if (regridding_) {
+    grid.route_insert(block, object, record.box);
+  } else if (levels_.holds(record.grid, width)) {
+    out.counters.migrations += grid.route_update(block, object, record.before, record.box) ? 1 : 0;
+    show(block, object, record.grid, &record.before, &record.box);
+  } else {  // too wide for its grid: it leaves for another, and the two sides of the step are shown apart
+    ++out.counters.migrations;
+    grid.route_erase(block, object, record.before);
+    show(block, object, record.grid, &record.before, nullptr);
+    record.grid = levels_.home(width);
+    levels_.grid(record.grid).route_insert(block, object, record.box);
+    show(block, object, record.grid, nullptr, &record.box);
+  }
+}
+
+// Shows a changed object to the other grids. In coarser ones it meets everybody; in finer ones only those that rest,
+// for the others are shown to its own grid.
+template <class Scalar, int Dim>
+void EngineCore<Scalar, Dim>::show(std::size_t block, ObjectId object, GridIndex home, const BoxType* before,
+                                   const BoxType* after) {
+  if (levels_.live().size() == 1) return;
+  for (const GridIndex other : levels_.live()) {
+    if (other == home) continue;
+    levels_.grid(other).route_visit(block, object, before, after, !levels_.coarser(other, home));
+  }
+}
+
+template <class Scalar, int Dim>
+void EngineCore<Scalar, Dim>::relocate(std::size_t block, ObjectId object, RouteBlock& out) {
+  const Record& record = objects_.record(object);
+  const GridIndex home = levels_.home(LevelsType::width(record.box));
+  if (home == record.grid) return;
+  levels_.grid(record.grid).route_detach(block, object, record.box);
+  levels_.grid(home).route_attach(block, object, record.box);
+  out.relocated.emplace_back(object, home);
+}
+
+// ---- gather: each cell's calls together, by shard
 
 template <class Scalar, int Dim>
 void EngineCore<Scalar, Dim>::plan_gather(std::vector<std::uint64_t>& costs) {
-  costs.assign(grid_.groups(), 1);
+  std::size_t used = 0;
+  std::uint64_t total = 0;
+  for (const GridIndex grid : levels_.live()) {
+    for (std::size_t shard = 0; shard < levels_.grid(grid).shards(); ++shard) {
+      const std::size_t queued = levels_.grid(grid).queued(shard);
+      if (queued == 0) continue;
+      if (used == gathers_.size()) gathers_.emplace_back();
+      gathers_[used].grid = grid;
+      gathers_[used].shard = shard;
+      ++used;
+      costs.push_back(queued);
+      total += queued;
+    }
+  }
+  gathers_.resize(used);
+  counters_.cell_ops = total;
+  const auto workers = static_cast<std::uint64_t>(executor_->concurrency());
+  task_cost_ = workers == 1
+                   ? ~std::uint64_t{0}
+                   : std::max(engine_core::kSmallestTask, 16 * total / (engine_core::kTasksPerWorker * workers));
 }
 
-// ---- drain: ops to overlap deltas, by active cell
+template <class Scalar, int Dim>
+void EngineCore<Scalar, Dim>::gather(std::size_t index) {
+  GatherTask& task = gathers_[index];
+  GridType& grid = levels_.grid(task.grid);
+  grid.gather(task.shard);
+  task.cuts.clear();
+  task.costs.clear();
+  task.met = 0;
+  task.ops = 0;
+  std::uint64_t cost = 0;
+  const auto cells = grid.active(task.shard);
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const auto& cell = cells[i];
+    const std::uint64_t own = std::uint64_t{cell.call_count} * (8 + cell.population / 8) + 8;
+    if (cost > 0 && cost + own > task_cost_) {
+      task.cuts.push_back(i);
+      task.costs.push_back(std::exchange(cost, 0));
+    }
+    cost += own;
+    task.met += static_cast<double>(cell.call_count) * cell.population;
+    task.ops += cell.call_count;
+  }
+  if (cost > 0) {
+    task.cuts.push_back(cells.size());
+    task.costs.push_back(cost);
+  }
+}
+
+// ---- drain: calls to overlap deltas, by active cell
 
 template <class Scalar, int Dim>
 void EngineCore<Scalar, Dim>::plan_drain(std::vector<std::uint64_t>& costs) {
-  const auto cost = [](const auto& cell) {
-    // A drain visits each op's endpoints, and often each resident's.
-    return std::uint64_t{16} * cell.op_count + std::uint64_t{4} * cell.population + 64;
-  };
-  std::uint64_t total = 0;
-  double met = 0;
-  for (std::size_t group = 0; group < grid_.groups(); ++group) {
-    for (const auto& cell : grid_.active(group)) {
-      total += cost(cell);
-      counters_.cell_ops += cell.op_count;
-      met += static_cast<double>(cell.op_count) * cell.population;
-      ++counters_.cells_drained;
-    }
-  }
-  crowding_ = counters_.cell_ops == 0 ? 0 : met / static_cast<double>(counters_.cell_ops);
-  const auto workers = static_cast<std::uint64_t>(executor_->concurrency());
-  const std::uint64_t share =
-      workers == 1 ? total + 1 : std::max(engine_core::kSmallestTask, total / (engine_core::kTasksPerWorker * workers));
   std::size_t used = 0;
-  for (std::size_t group = 0; group < grid_.groups(); ++group) {
-    const auto cells = grid_.active(group);
-    for (std::size_t first = 0, end = 0; first < cells.size(); first = end) {
-      std::uint64_t sum = 0;
-      while (end < cells.size() && (sum == 0 || sum + cost(cells[end]) <= share)) sum += cost(cells[end++]);
+  double met = 0;
+  std::uint64_t ops = 0;
+  for (const GatherTask& gathered : gathers_) {
+    const auto cells = levels_.grid(gathered.grid).active(gathered.shard);
+    counters_.cells_drained += cells.size();
+    if (gathered.grid == levels_.finest()) met += gathered.met, ops += gathered.ops;
+    std::size_t first = 0;
+    for (std::size_t i = 0; i < gathered.cuts.size(); ++i) {
       if (used == tasks_.size()) tasks_.emplace_back();
-      tasks_[used].group = group;
-      tasks_[used].cells = cells.subspan(first, end - first);
-      ++used;
-      costs.push_back(sum);
+      DrainTask& task = tasks_[used++];
+      task.grid = gathered.grid;
+      task.shard = gathered.shard;
+      task.cells = cells.subspan(first, gathered.cuts[i] - first);
+      first = gathered.cuts[i];
+      costs.push_back(gathered.costs[i]);
     }
   }
   tasks_.resize(used);
+  regrid_.observe(met, ops);
 }
 
 template <class Scalar, int Dim>
 void EngineCore<Scalar, Dim>::drain(std::size_t index) {
   DrainTask& task = tasks_[index];
-  task.deltas.clear();
-  task.counters = SapCounters{};
-  const auto cells = task.cells;
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    if (i + 2 < cells.size()) grid_.prefetch(cells[i + 1], cells[i + 2]);
-    grid_.drain(task.group, cells[i], task.deltas, task.counters);
+  task.out.clear();
+  levels_.grid(task.grid).drain(task.shard, task.cells, StepBoxes<Scalar, Dim>(objects_, steps_ + 1), task.out);
+  counting() ? partition(task) : report(task);
+}
+
+// Deltas to events, while they are still in the worker's cache.
+template <class Scalar, int Dim>
+void EngineCore<Scalar, Dim>::report(DrainTask& task) const {
+  task.begins.clear();
+  task.ends.clear();
+  const Reporter<Scalar, Dim> reporter(objects_, levels_, steps_ + 1);
+  constexpr std::size_t kAhead = 8;
+  const auto& deltas = task.out.deltas;
+  for (std::size_t i = 0; i < std::min(kAhead, deltas.size()); ++i) reporter.prefetch(deltas[i].pair);
+  std::size_t i = 0;
+  for (const auto& run : task.out.runs) {
+    for (; i < run.end; ++i) {
+      if (i + kAhead < deltas.size()) reporter.prefetch(deltas[i + kAhead].pair);
+      const PairKey pair = deltas[i].pair;
+      const Verdict verdict = reporter.judge(pair, task.grid, run.cell);
+      if (verdict == Verdict::kBegin) task.begins.push_back(pair);
+      if (verdict == Verdict::kEnd) task.ends.push_back(pair);
+    }
   }
-  partition(task);
 }
 
 // Deltas into slots by shard, while they are still in the worker's cache.
 template <class Scalar, int Dim>
 void EngineCore<Scalar, Dim>::partition(DrainTask& task) const {
+  const auto& deltas = task.out.deltas;
   task.shard_end.assign(shards_.size() + 1, 0);
-  for (const OverlapDelta& delta : task.deltas) ++task.shard_end[shard_of(delta.pair) + 1];
+  for (const OverlapDelta& delta : deltas) ++task.shard_end[shard_of(delta.pair) + 1];
   for (std::size_t shard = 1; shard <= shards_.size(); ++shard) task.shard_end[shard] += task.shard_end[shard - 1];
-  task.by_shard.resize(task.deltas.size());
+  task.by_shard.resize(deltas.size());
   // Each entry walks from its shard's begin to its end, and so becomes what its name says.
-  for (const OverlapDelta& delta : task.deltas) task.by_shard[task.shard_end[shard_of(delta.pair)]++] = delta;
+  for (const OverlapDelta& delta : deltas) task.by_shard[task.shard_end[shard_of(delta.pair)]++] = delta;
   task.shard_end.pop_back();
 }
 
@@ -267,73 +403,24 @@ template <class Scalar, int Dim>
 void EngineCore<Scalar, Dim>::finish_step() {
   for (RouteBlock& block : blocks_) {
     counters_ += block.counters;
-    outside_ += block.outside_change;
     objects_.free_ids(block.retired);
+    for (const auto& [object, home] : block.relocated) objects_.record(object).grid = home;
   }
-  for (const DrainTask& task : tasks_) counters_.cells += task.counters;
-  for (const Shard& shard : shards_) {
-    counters_.begins += shard.begins.size();
-    counters_.ends += shard.ends.size();
+  for (const DrainTask& task : tasks_) {
+    counters_.cells += task.out.counters;
+    levels_.grid(task.grid).drop_empty(task.shard, task.out.emptied);
   }
-  if (regridding_) {
-    outside_at_fit_ = outside_;
-    crowding_at_fit_ = 0;
-  } else if (crowding_at_fit_ == 0) {
-    crowding_at_fit_ = crowding_;
-  }
-}
-
-// ---- the grid
-
-// Twice or a quarter of the objects, or an eighth of them has left the bounds.
-template <class Scalar, int Dim>
-bool EngineCore<Scalar, Dim>::outgrown() const {
-  const std::size_t objects = objects_.size();
-  if (objects > 2 * objects_at_fit_ || 4 * objects + 64 < objects_at_fit_) return true;
-  return !config_.bounds && 8 * (outside_ - outside_at_fit_) > static_cast<std::int64_t>(objects);
-}
-
-// The cells that ops go to have become twice as crowded.
-template <class Scalar, int Dim>
-bool EngineCore<Scalar, Dim>::crowded() const {
-  return crowding_at_fit_ > 0 && crowding_ > 2 * std::max<double>(crowding_at_fit_, 2.0 * config_.cell_population);
-}
-
-// Derives the grid anew when the scene calls for it. All objects then move to a new grid in this step, except when it
-// is only for the crowd and cells would hardly become smaller: this crowd is then what the scene is like.
-template <class Scalar, int Dim>
-void EngineCore<Scalar, Dim>::follow_scene() {
-  if (fixed_grid()) return;
-  const bool must = !gridded_ || outgrown();
-  if (!must && !crowded()) return;
-  const GridSpec<Scalar, Dim> spec = derive_grid();
-  if (!must && spec.cell_size() > 0.75 * grid_.spec().cell_size()) {
-    crowding_at_fit_ = crowding_;
-    return;
-  }
-  grid_.reset(spec, config_.cell);
-  gridded_ = true;
-  regridding_ = true;
-  objects_at_fit_ = std::max<std::size_t>(objects_.size(), 32);
-  outside_ = 0;
-  counters_.regrids = 1;
+  last_changed_ = counters_.inserts + counters_.updates + counters_.erases;
+  if (levels_.live().size() > 1) objects_.set_widest(std::min(objects_.widest(), levels_.drop_empty()));
 }
 
 template <class Scalar, int Dim>
-GridSpec<Scalar, Dim> EngineCore<Scalar, Dim>::derive_grid() const {
-  GridFit<Scalar, Dim> fit;
-  fit.population = config_.cell_population;
-  fit.cell_size = config_.cell_size;
-  fit.bounds = config_.bounds;
-  std::vector<BoxType> sample;
-  const std::size_t stride = std::max<std::size_t>(1, objects_.size() / GridFit<Scalar, Dim>::kSample);
-  std::size_t seen = 0;
-  for (ObjectId object = 0; object < objects_.bound(); ++object) {
-    const std::uint8_t state = objects_.state(object);
-    if (state == 0 || (state & Objects::kErased) != 0) continue;
-    if (seen++ % stride == 0) sample.push_back(objects_.record(object).box);
-  }
-  return fit.derive(sample, objects_.size());
+void EngineCore<Scalar, Dim>::count_events(std::size_t begins, std::size_t ends) {
+  counters_.begins = begins;
+  counters_.ends = ends;
+  pairs_ += begins;
+  pairs_ -= ends;
+  total_ += counters_;
 }
 
 // ---- what clients ask for
@@ -341,7 +428,11 @@ GridSpec<Scalar, Dim> EngineCore<Scalar, Dim>::derive_grid() const {
 template <class Scalar, int Dim>
 std::vector<PairKey> EngineCore<Scalar, Dim>::pairs() const {
   std::vector<PairKey> pairs;
-  for (const Shard& shard : shards_) shard.witnesses.append_pairs(pairs);
+  if (counting()) {
+    for (const Shard& shard : shards_) shard.witnesses.append_pairs(pairs);
+  } else {
+    for_each_pair([&](PairKey pair) { pairs.push_back(pair); });
+  }
   return pairs;
 }
 
@@ -355,19 +446,21 @@ Stats EngineCore<Scalar, Dim>::stats() const {
     stats.stages.push_back({graph_->name(stage), idle_ ? 0 : graph_->seconds(stage)});
   }
   stats.objects = objects_.size();
-  stats.cell_size = grid_.spec().cell_size();
-  if (gridded_) {
-    stats.cells = grid_.spec().cell_count();
-    for (CellIndex cell = 0; cell < stats.cells; ++cell) stats.occupied_cells += grid_.cell(cell) != nullptr ? 1 : 0;
+  stats.pairs = pairs_;
+  stats.cell_size = levels_.cell_size();
+  stats.grids = levels_.live().size();
+  for (const GridIndex index : levels_.live()) {
+    const GridType& grid = levels_.grid(index);
+    stats.cells += grid.cell_count();
+    stats.bytes_cells += grid.cell_bytes();
+    stats.bytes_queues += grid.queue_bytes();
   }
   stats.bytes_objects = objects_.bytes();
-  stats.bytes_cells = grid_.cell_bytes();
-  stats.bytes_queues = grid_.queue_bytes();
   for (const DrainTask& task : tasks_) {
-    stats.bytes_queues += (task.deltas.capacity() + task.by_shard.capacity()) * sizeof(OverlapDelta);
+    stats.bytes_queues += (task.out.deltas.capacity() + task.by_shard.capacity()) * sizeof(OverlapDelta) +
+                          (task.begins.capacity() + task.ends.capacity()) * sizeof(PairKey);
   }
   for (const Shard& shard : shards_) {
-    stats.pairs += shard.witnesses.size();
     stats.bytes_witnesses +=
         shard.witnesses.bytes() + (shard.begins.capacity() + shard.ends.capacity()) * sizeof(PairKey);
   }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <numeric>
 #include <vector>
 
 #include <sweepgrid/engine/events.hpp>
@@ -33,9 +32,16 @@ class EventOrder {
     for (auto& shard : shards_) shard.clear();
   }
 
+  [[nodiscard]] std::size_t shards() const { return shards_.size(); }
+
   /// The list of a shard, to be filled and then sorted.
   [[nodiscard]] std::vector<PairType>& shard(std::size_t index) { return shards_[index]; }
-  void sort_shard(std::size_t index) { std::sort(shards_[index].begin(), shards_[index].end(), less); }
+  /// Also drops doubles, which lie in one shard.
+  void sort_shard(std::size_t index) {
+    auto& shard = shards_[index];
+    std::sort(shard.begin(), shard.end(), less);
+    shard.erase(std::unique(shard.begin(), shard.end()), shard.end());
+  }
 
   /// Chooses at most `ranges` ranges and sizes `out`; returns how many there are (0 when there is nothing).
   /// Precondition: every shard is sorted.

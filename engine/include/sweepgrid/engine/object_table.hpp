@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <mutex>
 #include <span>
 #include <stdexcept>
@@ -10,7 +11,7 @@
 
 #include <sweepgrid/engine/handle.hpp>
 #include <sweepgrid/engine/stable_vector.hpp>
-#include <sweepgrid/grid/cell_range.hpp>
+#include <sweepgrid/grid/levels.hpp>
 #include <sweepgrid/sap/box.hpp>
 #include <sweepgrid/sap/ids.hpp>
 
@@ -25,21 +26,25 @@ class ObjectTable {
  public:
   using BoxType = Box<Scalar, Dim>;
 
-  struct Record {
-    BoxType box;  // the one given last
-    CellRange<Dim> range;
-    std::uint32_t generation;
-  };
-
   /// What is known of an object, as bits. 0: the id is free.
   enum State : std::uint8_t {
     kLive = 1,
     kInserted = 2,  // since the latest step
     kUpdated = 4,
     kErased = 8,
-    kOutside = 16,  // of the grid's bounds
   };
   static constexpr std::uint8_t kQueued = kInserted | kUpdated | kErased;
+
+  // One object, one cache line, where it fits.
+  struct alignas(sizeof(BoxType) <= 24 && sizeof(BoxType) > 8 ? 64 : alignof(std::uint64_t)) Record {
+    BoxType box;               // the one given last
+    BoxType before;            // the one of the latest step, while an op is queued and after it was applied
+    std::uint64_t changed_at;  // the latest step that applied an op to the object, counted from 1
+    std::uint32_t generation;
+    GridIndex grid;         // where it lives
+    GridIndex grid_before;  // where it lived at the start of step `changed_at`
+    std::uint8_t change;    // what step `changed_at` did, as bits of State
+  };
 
   /// Objects whose marks are looked for together.
   static constexpr std::uint32_t kGranule = 256;
@@ -72,6 +77,10 @@ class ObjectTable {
   [[nodiscard]] std::size_t size() const { return live_.load(std::memory_order_relaxed); }
   [[nodiscard]] bool anything_queued() const { return queued_.load(std::memory_order_relaxed); }
 
+  /// No box was ever wider. Grows on its own; after a step the engine may set it to a lower bound that still holds.
+  [[nodiscard]] double widest() const { return widest_.load(std::memory_order_relaxed); }
+  void set_widest(double width) { widest_.store(width, std::memory_order_relaxed); }
+
   /// Granules and whether they hold a marked object.
   [[nodiscard]] std::uint32_t granules() const { return (bound() + (kGranule - 1)) / kGranule; }
   [[nodiscard]] bool granule_marked(std::uint32_t granule) const { return marks_[granule] != 0; }
@@ -98,12 +107,23 @@ class ObjectTable {
     if (!queued_.load(std::memory_order_relaxed)) queued_.store(true, std::memory_order_relaxed);
   }
 
+  // By bits: where the host flushes denormals to zero, == would take two of them for one.
+  static bool same_bits(const BoxType& a, const BoxType& b) { return std::memcmp(&a, &b, sizeof(a)) == 0; }
+
+  void measure(const BoxType& box) {
+    const double width = Levels<Scalar, Dim>::width(box);
+    double widest = widest_.load(std::memory_order_relaxed);
+    while (width > widest && !widest_.compare_exchange_weak(widest, width, std::memory_order_relaxed)) {
+    }
+  }
+
   StableVector<Record> records_;
   StableVector<std::uint8_t> states_;
   StableVector<std::uint8_t> marks_;  // by granule
   std::atomic<ObjectId> bound_ = 0;
   std::atomic<std::size_t> live_ = 0;
   std::atomic<bool> queued_ = false;
+  std::atomic<double> widest_ = 0;
   std::mutex allocation_;  // guards what follows, and growth
   std::vector<ObjectId> free_;
 };
@@ -123,11 +143,13 @@ Handle ObjectTable<Scalar, Dim>::insert(const BoxType& box) {
       states_.grow(std::uint64_t{object} + 1);
       marks_.grow(object / kGranule + std::uint64_t{1});
       records_[object].generation = 0;
+      records_[object].changed_at = 0;
       states_[object] = 0;
       if (object % kGranule == 0) marks_[object / kGranule] = 0;
       bound_.store(object + 1, std::memory_order_release);
     }
   }
+  measure(box);
   records_[object].box = box;
   states_[object] = kLive;
   mark(object, kInserted);
@@ -137,16 +159,19 @@ Handle ObjectTable<Scalar, Dim>::insert(const BoxType& box) {
 
 template <class Scalar, int Dim>
 void ObjectTable<Scalar, Dim>::update(ObjectId object, const BoxType& box) {
-  BoxType& current = records_[object].box;
+  Record& record = records_[object];
   if ((states_[object] & kQueued) == 0) {
-    if (current == box) return;  // a resting object that its client reports anyway costs nothing more
+    if (same_bits(record.box, box)) return;  // a resting object that its client reports anyway costs nothing more
+    record.before = record.box;
     mark(object, kUpdated);
   }
-  current = box;
+  measure(box);
+  record.box = box;
 }
 
 template <class Scalar, int Dim>
 void ObjectTable<Scalar, Dim>::erase(ObjectId object) {
+  if ((states_[object] & kQueued) == 0) records_[object].before = records_[object].box;
   mark(object, kErased);
   live_.fetch_sub(1, std::memory_order_relaxed);
 }

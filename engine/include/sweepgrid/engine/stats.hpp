@@ -41,10 +41,10 @@ struct Stats {
   std::vector<StageTime> stages;  ///< the latest step, in stage order; 0 when nothing was queued
 
   std::size_t objects = 0;
-  std::size_t cells = 0;           ///< of the grid
-  std::size_t occupied_cells = 0;  ///< that hold an object
-  double cell_size = 0;            ///< world units
-  std::size_t pairs = 0;           ///< overlapping now
+  std::size_t grids = 0;  ///< of different cell sizes
+  std::size_t cells = 0;  ///< that hold an object
+  double cell_size = 0;   ///< of the finest grid, world units
+  std::size_t pairs = 0;  ///< overlapping now
 
   /// Heap bytes held now, unused capacity included.
   std::size_t bytes_objects = 0;

@@ -4,28 +4,66 @@
 #include <cstddef>
 #include <cstdint>
 
+#include <sweepgrid/grid/cell_code.hpp>
+
 namespace sweepgrid {
 
 /// The cells that a box covers: a block of grid coordinates, both corners included.
 template <int Dim>
 struct CellRange {
-  std::array<std::uint16_t, static_cast<std::size_t>(Dim)> first;
-  std::array<std::uint16_t, static_cast<std::size_t>(Dim)> last;
+  /// The lower corner, then the upper.
+  std::array<std::uint32_t, 2 * static_cast<std::size_t>(Dim)> ends;
 
-  [[nodiscard]] bool contains(const std::array<std::uint16_t, static_cast<std::size_t>(Dim)>& cell) const {
+  [[nodiscard]] std::uint32_t first(int axis) const { return ends[axis]; }
+  [[nodiscard]] std::uint32_t last(int axis) const { return ends[Dim + axis]; }
+
+  [[nodiscard]] bool contains(const CellCoordinates<Dim>& cell) const {
     for (int axis = 0; axis < Dim; ++axis) {
-      if (cell[axis] < first[axis] || cell[axis] > last[axis]) return false;
+      if (cell[axis] < first(axis) || cell[axis] > last(axis)) return false;
     }
     return true;
   }
 
-  [[nodiscard]] std::uint64_t count() const {
-    std::uint64_t cells = 1;
-    for (int axis = 0; axis < Dim; ++axis) cells *= std::uint64_t{last[axis]} - first[axis] + 1;
+  /// Whether the cell is surrounded by cells of the range. A box covers such a cell wholly, whatever the rounding.
+  [[nodiscard]] bool surrounds(const CellCoordinates<Dim>& cell) const {
+    for (int axis = 0; axis < Dim; ++axis) {
+      if (cell[axis] <= first(axis) || cell[axis] >= last(axis)) return false;
+    }
+    return true;
+  }
+
+  /// Number of cells; double, because a box over everything would overflow an integer.
+  [[nodiscard]] double count() const {
+    double cells = 1;
+    for (int axis = 0; axis < Dim; ++axis) cells *= static_cast<double>(last(axis) - first(axis)) + 1;
     return cells;
   }
 
-  friend bool operator==(const CellRange&, const CellRange&) = default;
+  /// Calls `visit` with the code of every cell.
+  template <class Visit>
+  void for_each(Visit&& visit) const {
+    walk<Dim - 1>(0, visit);
+  }
+
+  friend bool operator==(const CellRange& a, const CellRange& b) {
+    // Without a branch for each coordinate: that they are all equal is what is expected.
+    std::uint32_t difference = 0;
+    for (int i = 0; i < 2 * Dim; ++i) difference |= a.ends[i] ^ b.ends[i];
+    return difference == 0;
+  }
+
+ private:
+  template <int kAxis, class Visit>
+  void walk(std::uint64_t code, Visit& visit) const {
+    for (std::uint32_t c = first(kAxis); c <= last(kAxis); ++c) {
+      const std::uint64_t next = code | CellCode<Dim>::part(kAxis, c);
+      if constexpr (kAxis == 0) {
+        visit(next);
+      } else {
+        walk<kAxis - 1>(next, visit);
+      }
+    }
+  }
 };
 
 }  // namespace sweepgrid

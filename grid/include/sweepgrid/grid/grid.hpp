@@ -2,86 +2,158 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <vector>
 
-#include <sweepgrid/grid/cell_range.hpp>
+#include <sweepgrid/grid/cell.hpp>
+#include <sweepgrid/grid/cell_directory.hpp>
 #include <sweepgrid/grid/grid_spec.hpp>
 #include <sweepgrid/grid/op_queues.hpp>
-#include <sweepgrid/sap/cell_kind.hpp>
-#include <sweepgrid/sap/overlap_delta.hpp>
-#include <sweepgrid/sap/sap_counters.hpp>
 
 namespace sweepgrid {
 
-/// The superstructure of section 3.1: cells, each a sweep and prune over its part of space, and who must hear of which
-/// box. A box lives in every cell of its range; the client keeps the range beside the object.
+/// What the drain of some cells leaves behind, and its scratch memory.
+template <class Scalar, int Dim>
+struct DrainOutput {
+  /// The deltas of one cell end at `end` of `deltas`; those of the cell before it end where they begin.
+  struct Run {
+    std::size_t end;
+    std::uint64_t cell;  // code
+  };
+
+  std::vector<OverlapDelta> deltas;
+  std::vector<Run> runs;
+  std::vector<std::uint32_t> emptied;  // ids of cells that are empty now
+  SapCounters counters;
+
+  std::vector<CellOp<Scalar, Dim>> ops;
+  std::vector<CellOp<Scalar, Dim>> transfers;
+  std::vector<typename SweepAndPrune<Scalar, Dim>::Visit> visits;
+  std::vector<typename SweepAndPrune<Scalar, Dim>::Visit> late_visits;
+
+  void clear() {
+    deltas.clear();
+    runs.clear();
+    emptied.clear();
+    counters = SapCounters{};
+  }
+};
+
+/// The superstructure of section 3.1 with one cell size: cells that exist where objects are, and who must hear of which
+/// box. A box lives in every cell of its range.
 ///
-/// A step is three calls: route_* for every op, gather for every group, drain for every active cell. No threads here:
-/// calls for different blocks (route), groups (gather) and cells (drain) may run at once.
+/// A step is three calls: route_* for every op, gather for every shard, drain for every active cell. No threads here:
+/// calls for different blocks (route), shards (gather) and cells (drain) may run at once.
 template <class Scalar, int Dim>
 class Grid {
  public:
-  using Op = CellOp<Scalar, Dim>;
   using BoxType = Box<Scalar, Dim>;
+  using CellType = Cell<Scalar, Dim>;
+  using Range = CellRange<Dim>;
+  using Output = DrainOutput<Scalar, Dim>;
 
-  /// A cell with queued ops (section 3.3), and what draining it is estimated to cost.
+  /// A cell with queued calls (section 3.3), and what draining it is estimated to cost.
   struct ActiveCell {
-    CellIndex cell;
-    std::uint32_t first_op;  // among the group's ops
-    std::uint32_t op_count;
+    std::uint32_t cell;  // id in the shard
+    std::uint32_t first_call;
+    std::uint32_t call_count;
     std::uint32_t population;
   };
 
-  /// Drops all cells.
-  void reset(const GridSpec<Scalar, Dim>& spec, const CellOptions& options);
+  /// `shards`: how many parts may be gathered at once, a power of two.
+  Grid(const GridSpec<Scalar, Dim>& spec, const CellOptions& options, std::size_t shards);
+
   [[nodiscard]] const GridSpec<Scalar, Dim>& spec() const { return spec_; }
 
-  /// Empties the queues (G2) and sets how finely routing and gathering are cut. `groups`: a power of two.
-  void begin_step(std::size_t blocks, std::size_t groups);
+  /// Empties the queues (G2) and sets in how many blocks ops arrive. `dense`: most objects have changed, so every cell
+  /// asks for its residents' boxes by itself, and updates that stay within their cells need no call.
+  void begin_step(std::size_t blocks, bool dense);
 
-  /// Queue an op to the cells that must hear of it and set or use the object's `range`.
-  void route_insert(std::size_t block, ObjectId object, const BoxType& box, CellRange<Dim>& range);
-  /// Returns whether the range changed (a migration: erases, inserts and updates in the cells concerned).
-  bool route_update(std::size_t block, ObjectId object, const BoxType& box, CellRange<Dim>& range);
-  void route_erase(std::size_t block, ObjectId object, const CellRange<Dim>& range);
+  void route_insert(std::size_t block, ObjectId object, const BoxType& box);
+  /// Returns whether the cell range changed (a migration: erases, inserts and updates in the cells concerned).
+  bool route_update(std::size_t block, ObjectId object, const BoxType& before, const BoxType& after);
+  void route_erase(std::size_t block, ObjectId object, const BoxType& before);
 
-  /// Sorts the group's ops by cell and lists its active cells, in cell order.
-  void gather(std::size_t group);
-  [[nodiscard]] std::span<const ActiveCell> active(std::size_t group) const { return groups_[group].active; }
-  [[nodiscard]] std::size_t groups() const { return groups_.size(); }
+  /// Takes over an object from another grid, or hands it over, at the end of the step; its pairs do not change.
+  void route_attach(std::size_t block, ObjectId object, const BoxType& box);
+  void route_detach(std::size_t block, ObjectId object, const BoxType& box);
 
-  /// Applies a cell's ops; see SweepAndPrune::drain. A cell is created by its first insert and dropped when empty.
-  void drain(std::size_t group, const ActiveCell& active, std::vector<OverlapDelta>& deltas, SapCounters& counters);
+  /// Shows an object of another grid that changed to the cells that it may concern. Null: it had no box, or has none.
+  /// `resting_only`: only residents that rest in this step need to hear of it, so cells that both boxes cover wholly
+  /// are left out, as nothing changes there, and cells that do not exist yet.
+  void route_visit(std::size_t block, ObjectId object, const BoxType* before, const BoxType* after, bool resting_only);
 
-  /// Fetches what draining the cell will touch into the cache. `next`: the cell after it, whose turn to be fetched is
-  /// next.
-  void prefetch(const ActiveCell& active, const ActiveCell& next) const;
+  /// Sorts the shard's calls by cell, makes the cells that are missing, and lists the active cells.
+  void gather(std::size_t shard);
+  [[nodiscard]] std::span<const ActiveCell> active(std::size_t shard) const { return shards_[shard].active; }
+  [[nodiscard]] std::size_t shards() const { return shards_.size(); }
+  /// Calls that gathering the shard has to deal with; in a dense step its cells count, too.
+  [[nodiscard]] std::size_t queued(std::size_t shard) const {
+    return ops_.size(shard) + late_.size(shard) + (dense_ ? shards_[shard].directory.size() : 0);
+  }
 
-  /// The cell's sweep and prune, null where the cell is empty.
-  [[nodiscard]] const SweepAndPrune<Scalar, Dim>* cell(CellIndex index) const { return cells_[index].get(); }
+  /// Applies the calls of active cells [first, last) of the shard. `boxes` tells each object's box at the start and at
+  /// the end of the step: before(id), after(id), prefetch(id).
+  template <class Boxes>
+  void drain(std::size_t shard, std::span<const ActiveCell> cells, const Boxes& boxes, Output& out);
+
+  /// Drops those of the cells that are still empty. Not beside other calls.
+  void drop_empty(std::size_t shard, std::span<const std::uint32_t> cells);
+
+  /// Calls `visit` with every cell, in no order.
+  template <class Visit>
+  void for_each_cell(Visit&& visit) const;
+  /// The cell with this code, or null.
+  [[nodiscard]] const CellType* find(std::uint64_t code) const;
+  [[nodiscard]] std::size_t cell_count() const;
 
   /// Heap bytes of the cells, and of the queues.
   [[nodiscard]] std::size_t cell_bytes() const;
   [[nodiscard]] std::size_t queue_bytes() const;
 
  private:
-  /// The queues of the cells of one group, one after another.
-  struct Group {
-    std::vector<Op> ops;
+  using CellId = typename CellDirectory<Dim>::CellId;
+  using Code = CellCode<Dim>;
+
+  struct Call {
+    ObjectId object;
+    CellCall call;
+  };
+
+  struct Shard {
+    CellDirectory<Dim> directory;
+    std::vector<CellType> cells;  // by id
+    std::vector<CellId> free;
+    std::vector<std::uint32_t> queue;  // by id; scratch of gather, all 0 outside it
+    std::vector<Call> calls;           // by cell
     std::vector<ActiveCell> active;
   };
 
-  template <class Visit>
-  void for_each_cell(const CellRange<Dim>& range, Visit&& visit) const;
+  [[nodiscard]] std::size_t shard_of(std::uint64_t code) const {
+    return shards_.size() == 1 ? 0 : Code::hash(Code::block(code)) >> shard_shift_;
+  }
+  /// A block of neighbouring cells as routing sees it: one look-up serves all cells of the block.
+  struct BlockView {
+    std::uint64_t name = ~std::uint64_t{0};
+    std::size_t shard = 0;
+    const CellId* cells = nullptr;
+  };
+  void push(OpQueues& queues, BlockView& view, std::size_t block, std::uint64_t code, ObjectId object, CellCall call);
+  CellId locate(Shard& shard, const OpQueues::Fresh& op);
+  CellId make_cell_at(Shard& shard, std::uint64_t code, CellId& place);
+  template <class Boxes>
+  void drain_cell(Shard& shard, const ActiveCell& active, const Boxes& boxes, Output& out);
+  template <class Boxes>
+  bool sort_out(const CellType& cell, std::span<const Call> calls, const Boxes& boxes, Output& out) const;
+  static void drain_visited(CellType& cell, Output& out);
 
   GridSpec<Scalar, Dim> spec_;
   CellOptions options_;
-  std::vector<std::unique_ptr<SweepAndPrune<Scalar, Dim>>> cells_;  // by cell index; null when empty
-  std::vector<std::uint32_t> queue_;  // by cell index; scratch of gather, all 0 outside it
-  OpQueues<Scalar, Dim> queues_;
-  std::vector<Group> groups_;
+  int shard_shift_ = 64;
+  bool dense_ = false;
+  std::vector<Shard> shards_;
+  OpQueues ops_;   // inserts, updates, erases
+  OpQueues late_;  // what comes after them
 };
 
 }  // namespace sweepgrid

@@ -57,13 +57,6 @@ struct Extent {
     for (int axis = 0; axis < Dim; ++axis) longest = std::max(longest, upper[axis] - lower[axis]);
     return longest;
   }
-
-  [[nodiscard]] bool fits(double cell_size, double cells) const {
-    double total = 1;
-    for (int axis = 0; axis < Dim; ++axis) total *= std::max(1.0, std::ceil((upper[axis] - lower[axis]) / cell_size));
-    // Negated so that NaN and infinity do not fit.
-    return total <= cells && longest() / cell_size < GridSpec<double, Dim>::kMaxCellsPerAxis;
-  }
 };
 
 // Between quantiles, so that objects far away (a part of `tail` on each side) do not stretch the grid over empty space.
@@ -80,16 +73,6 @@ Extent<Dim> extent_of(const Points<Dim>& points, double tail) {
     extent.upper[axis] = values[points.size() - 1 - skipped];
     const double slack = (extent.upper[axis] - extent.lower[axis]) * 0.02;
     extent.lower[axis] -= slack, extent.upper[axis] += slack;
-  }
-  return extent;
-}
-
-template <class Scalar, int Dim>
-Extent<Dim> extent_of(const Box<Scalar, Dim>& bounds) {
-  Extent<Dim> extent;
-  for (int axis = 0; axis < Dim; ++axis) {
-    extent.lower[axis] = static_cast<double>(bounds.min[axis]);
-    extent.upper[axis] = static_cast<double>(bounds.max[axis]);
   }
   return extent;
 }
@@ -121,7 +104,7 @@ double companions(const Points<Dim>& points, const std::array<double, Dim>& lowe
 // The largest size at which an object has at most `population` companions, or nearly twice the width of most boxes.
 template <class Scalar, int Dim>
 double fitting_size(const std::vector<Box<Scalar, Dim>>& sample, const Points<Dim>& points, const Extent<Dim>& extent,
-                    std::size_t objects, int population) {
+                    std::size_t objects, double population) {
   double large = extent.longest();
   double small = std::clamp(smallest_cell(sample), large / 65536, large);
   std::vector<std::uint64_t> cells;
@@ -136,24 +119,38 @@ double fitting_size(const std::vector<Box<Scalar, Dim>>& sample, const Points<Di
 }  // namespace grid_fit
 
 template <class Scalar, int Dim>
-GridSpec<Scalar, Dim> GridFit<Scalar, Dim>::derive(const std::vector<Box<Scalar, Dim>>& sample,
-                                                   std::size_t objects) const {
+auto GridFit<Scalar, Dim>::derive(const std::vector<Box<Scalar, Dim>>& sample, std::size_t objects) const -> Result {
   const auto points = grid_fit::centres(sample);
-  // Empty cells cost memory: no more of them than objects, beyond a floor.
-  const double cells = std::min(static_cast<double>(GridSpec<Scalar, Dim>::kMaxCells),
-                                4096.0 + (cell_size ? 8 : 1) * static_cast<double>(objects));
-  grid_fit::Extent<Dim> extent;
-  for (const double tail : {0.005, 0.05, 0.25}) {
-    extent = bounds ? grid_fit::extent_of(*bounds) : grid_fit::extent_of<Dim>(points, tail);
-    if (!cell_size || extent.fits(*cell_size, cells)) break;
-  }
+  const auto extent = grid_fit::extent_of<Dim>(points, 0.005);
+  Result result;
+  result.lower = extent.lower;
+  result.upper = extent.upper;
   // Anything smaller runs into denormals on its way to cells.
   constexpr double kSmallestExtent = std::numeric_limits<double>::min() * 65536;
-  if (!(extent.longest() >= kSmallestExtent && std::isfinite(extent.longest()))) return {};
-  double size =
-      cell_size ? *cell_size : grid_fit::fitting_size<Scalar, Dim>(sample, points, extent, objects, population);
-  while (!extent.fits(size, cells)) size *= cell_size ? 2 : 1.25;
-  return GridSpec<Scalar, Dim>(extent.lower, extent.upper, size);
+  const bool sound = extent.longest() >= kSmallestExtent && std::isfinite(extent.longest());
+  if (cell_size) {
+    result.cell_size = *cell_size;
+  } else if (sound) {
+    result.cell_size = grid_fit::fitting_size<Scalar, Dim>(sample, points, extent, objects, population);
+  } else if (const double width = grid_fit::smallest_cell(sample); width >= kSmallestExtent) {
+    result.cell_size = width;
+  }
+  if (!sound) result.upper = result.lower;
+  return result;
+}
+
+template <class Scalar, int Dim>
+GridSpec<Scalar, Dim> GridFit<Scalar, Dim>::bounded(const Result& result, double cells) {
+  for (double size = result.cell_size;; size *= 2) {
+    CellCoordinates<Dim> limit;
+    double total = 1;
+    for (int axis = 0; axis < Dim; ++axis) {
+      const double count = std::max(1.0, std::ceil((result.upper[axis] - result.lower[axis]) / size));
+      total *= count;
+      limit[axis] = static_cast<std::uint32_t>(std::min(count - 1, double{CellCode<Dim>::kLastCoordinate}));
+    }
+    if (total <= cells) return GridSpec<Scalar, Dim>(size, result.lower, limit);
+  }
 }
 
 }  // namespace sweepgrid

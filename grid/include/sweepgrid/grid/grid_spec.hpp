@@ -2,12 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <sstream>
-#include <stdexcept>
 #include <type_traits>
 
 #include <sweepgrid/grid/cell_range.hpp>
@@ -15,95 +12,69 @@
 
 namespace sweepgrid {
 
-/// Number of a cell: its grid coordinates in row-major order, the last axis slowest.
-using CellIndex = std::uint32_t;
-
-/// How space is cut into cubic cells. The border cells reach to infinity, so every box has a cell range.
+/// How space is cut into cubic cells. There are no bounds: beyond the last coordinates, border cells reach to infinity,
+/// so every box has a cell range.
 ///
 /// Two boxes that overlap share a cell whatever the rounding, because the cell coordinate is a monotone function of
-/// the world coordinate on each axis.
+/// the world coordinate on each axis. Written as (x - a) * b, which no compiler can contract differently in two places.
 template <class Scalar, int Dim>
 class GridSpec {
  public:
-  static constexpr std::uint64_t kMaxCells = std::uint64_t{1} << 24;
-  static constexpr std::uint64_t kMaxCellsPerAxis = std::uint64_t{1} << 16;
-  using Counts = std::array<std::uint32_t, static_cast<std::size_t>(Dim)>;
+  using Code = CellCode<Dim>;
 
   /// One cell over everything.
-  GridSpec() { counts_.fill(1), origin_.fill(0); }
+  GridSpec() { origin_.fill(0), limit_.fill(0); }
 
-  /// Cells of edge `cell_size` (world units, positive) over `lower` to `upper` (finite).
-  /// Throws std::invalid_argument for more than kMaxCells cells, or kMaxCellsPerAxis on an axis.
-  GridSpec(const std::array<double, Dim>& lower, const std::array<double, Dim>& upper, double cell_size)
-      : cell_size_(cell_size), scale_(static_cast<Real>(1 / cell_size)) {
-    double total = 1;
-    for (int axis = 0; axis < Dim; ++axis) {
-      constexpr double kLimit = std::numeric_limits<Real>::max();
-      origin_[axis] = static_cast<Real>(std::clamp(lower[axis], -kLimit, kLimit));
-      const double cells = std::max(1.0, std::ceil((upper[axis] - lower[axis]) / cell_size));
-      total *= cells;
-      if (!(cells <= kMaxCellsPerAxis && total <= kMaxCells)) {
-        std::ostringstream text;
-        text << "sweepgrid: cell_size " << cell_size << " makes more than " << kMaxCells << " cells, or more than "
-             << kMaxCellsPerAxis << " on one axis, over the bounds";
-        throw std::invalid_argument(text.str());
-      }
-      counts_[axis] = static_cast<std::uint32_t>(cells);
+  /// Cells of edge `cell_size` (world units, positive). `origin`: a corner of the scene; precision is best near it.
+  /// `limit`: the last coordinate of each axis, beyond which everything shares the border cells.
+  GridSpec(double cell_size, const std::array<double, Dim>& origin, const CellCoordinates<Dim>& limit)
+      : cell_size_(cell_size) {
+    constexpr double kMax = std::numeric_limits<Real>::max();
+    scale_ = static_cast<Real>(std::min(1 / cell_size, kMax));
+    for (int i = 0; i < 2 * Dim; ++i) {
+      origin_[i] = static_cast<Real>(std::clamp(origin[i % Dim], -kMax, kMax));
+      limit_[i] = static_cast<Real>(limit[i % Dim]);
     }
   }
 
-  [[nodiscard]] double cell_size() const { return cell_size_; }
-  [[nodiscard]] const Counts& counts() const { return counts_; }
-
-  [[nodiscard]] std::uint32_t cell_count() const {
-    std::uint32_t cells = 1;
-    for (const std::uint32_t count : counts_) cells *= count;
-    return cells;
+  /// As above without limits; `origin` lies so that as many cells as float can tell apart precisely are before it.
+  static GridSpec unlimited(double cell_size, std::array<double, Dim> origin) {
+    constexpr double kBefore = double{std::uint32_t{1} << std::min(16, Code::kAxisBits - 1)};
+    for (double& o : origin) o -= kBefore * cell_size;
+    CellCoordinates<Dim> limit;
+    limit.fill(Code::kLastCoordinate);
+    return GridSpec(cell_size, origin, limit);
   }
+
+  /// Infinite for the one cell over everything.
+  [[nodiscard]] double cell_size() const { return cell_size_; }
+
+  [[nodiscard]] std::uint32_t coordinate(int axis, Scalar value) const { return coordinate_of(axis, value); }
 
   [[nodiscard]] CellRange<Dim> range(const Box<Scalar, Dim>& box) const {
+    std::array<Scalar, 2 * static_cast<std::size_t>(Dim)> ends;  // side by side, so that one vector holds them
+    for (int axis = 0; axis < Dim; ++axis) ends[axis] = box.min[axis], ends[Dim + axis] = box.max[axis];
     CellRange<Dim> range;
-    for (int axis = 0; axis < Dim; ++axis) {
-      range.first[axis] = coordinate(axis, box.min[axis]);
-      range.last[axis] = coordinate(axis, box.max[axis]);
-    }
+    for (int i = 0; i < 2 * Dim; ++i) range.ends[i] = coordinate_of(i, ends[i]);
     return range;
-  }
-
-  /// Whether the box lies wholly beyond the bounds on some axis: exact there, but served by border cells.
-  [[nodiscard]] bool outside(const Box<Scalar, Dim>& box) const {
-    bool out = false;
-    for (int axis = 0; axis < Dim; ++axis) {
-      const Real extent = static_cast<Real>(counts_[axis]);
-      out |= scaled(axis, box.max[axis]) < 0 || scaled(axis, box.min[axis]) > extent;
-    }
-    return out;
-  }
-
-  [[nodiscard]] CellIndex index(const std::array<std::uint16_t, static_cast<std::size_t>(Dim)>& cell) const {
-    CellIndex index = 0;
-    for (int axis = Dim - 1; axis >= 0; --axis) index = index * counts_[axis] + cell[axis];
-    return index;
   }
 
  private:
   using Real = std::conditional_t<std::is_same_v<Scalar, float>, float, double>;
 
-  [[nodiscard]] Real scaled(int axis, Scalar value) const {
-    return (static_cast<Real>(value) - origin_[axis]) * scale_;
-  }
-
-  [[nodiscard]] std::uint16_t coordinate(int axis, Scalar value) const {
+  // Of end `i` of a box.
+  [[nodiscard]] std::uint32_t coordinate_of(int i, Scalar value) const {
     // Clamped before the conversion: an integer cannot hold what a coordinate at 1e30 or infinity scales to. The order
-    // of arguments matters: infinity times the single cell's scale of 0 is NaN, and max(0, NaN) is 0.
-    const Real limit = static_cast<Real>(counts_[axis] - 1);
-    return static_cast<std::uint16_t>(std::min(limit, std::max(Real{0}, scaled(axis, value))));
+    // of arguments matters: infinity times a scale of 0 is NaN, and max(0, NaN) is 0.
+    const Real scaled = (static_cast<Real>(value) - origin_[i]) * scale_;
+    return static_cast<std::uint32_t>(static_cast<std::int32_t>(std::min(limit_[i], std::max(Real{0}, scaled))));
   }
 
-  double cell_size_ = 1;
+  double cell_size_ = std::numeric_limits<double>::infinity();
   Real scale_ = 0;  // of the single cell: everything maps to coordinate 0
-  std::array<Real, static_cast<std::size_t>(Dim)> origin_;
-  Counts counts_;
+  // For the mins of a box, then again for its maxes.
+  std::array<Real, 2 * static_cast<std::size_t>(Dim)> origin_;
+  std::array<Real, 2 * static_cast<std::size_t>(Dim)> limit_;
 };
 
 }  // namespace sweepgrid

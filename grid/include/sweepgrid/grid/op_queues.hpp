@@ -1,63 +1,95 @@
 #pragma once
 
 #include <cstddef>
-#include <span>
+#include <cstdint>
 #include <vector>
 
-#include <sweepgrid/grid/grid_spec.hpp>
-#include <sweepgrid/sap/cell_op.hpp>
+#include <sweepgrid/sap/ids.hpp>
 
 namespace sweepgrid {
 
-/// The ops of one step on their way to cells. Blocks of objects write, groups of cells read; each [block][group] list
-/// has one writer and one reader, so neither needs a lock, and reading blocks in order keeps the order of object ids.
-template <class Scalar, int Dim>
+/// What a cell must hear of an object.
+enum class CellCall : std::uint32_t {
+  kInsert,  ///< a resident comes
+  kUpdate,  ///< a resident has a new box
+  kErase,   ///< a resident goes
+  // Heard after all of the above:
+  kVisit,     ///< an object of another grid had a box here and has one now; either may miss the cell
+  kVisitWas,  ///< of another grid, here at the start of the step only
+  kVisitIs,   ///< of another grid, here at the end of the step only
+  // Heard last, and no news:
+  kAttach,  ///< a resident comes from another grid
+  kDetach,  ///< a resident goes to another grid
+};
+
+/// The calls of one step on their way to cells. Blocks of objects write, shards of a grid read; each [block][shard]
+/// list has one writer and one reader, so neither needs a lock, and reading blocks in order keeps the order of object
+/// ids.
 class OpQueues {
  public:
-  struct Routed {
-    CellIndex cell;
-    CellOp<Scalar, Dim> op;
+  static constexpr std::uint32_t kMaxCells = (std::uint32_t{1} << 29) - 1;  // in a shard
+
+  /// A call to a cell that exists: eight bytes, for they are written, sorted and read once for each op and cell.
+  struct Known {
+    std::uint32_t cell : 29;  // its id in the shard
+    std::uint32_t call : 3;
+    ObjectId object;
   };
 
-  /// Empties the queues and gives them `blocks` writers and `groups` (a power of two) readers. Memory that the latest
-  /// step did not use is returned, but for a little slack.
-  void reset(std::size_t blocks, std::size_t groups) {
-    for (auto& list : lists_) {
-      const std::size_t wanted = list.size() + list.size() / 8;
-      const bool wasteful = list.capacity() > 64 && wanted + wanted / 8 < list.capacity();
-      if (wasteful) std::vector<Routed>().swap(list);
-      list.clear();
-      if (wasteful) list.reserve(wanted);
-    }
-    lists_.resize(blocks * groups);
+  /// A call to a cell that may have to be made.
+  struct Fresh {
+    std::uint64_t cell;  // its code
+    ObjectId object;
+    CellCall call;
+  };
+
+  struct List {
+    std::vector<Known> known;
+    std::vector<Fresh> fresh;
+
+    [[nodiscard]] std::size_t size() const { return known.size() + fresh.size(); }
+  };
+
+  /// Empties the queues and gives them `blocks` writers and `shards` readers. Memory that the latest step did not use
+  /// is returned, but for a little slack.
+  void reset(std::size_t blocks, std::size_t shards) {
+    for (List& list : lists_) clear(list.known), clear(list.fresh);
+    lists_.resize(blocks * shards);
     blocks_ = blocks;
-    groups_ = groups;
+    shards_ = shards;
   }
 
   [[nodiscard]] std::size_t blocks() const { return blocks_; }
-  [[nodiscard]] std::size_t groups() const { return groups_; }
+  [[nodiscard]] List& list(std::size_t block, std::size_t shard) { return lists_[block * shards_ + shard]; }
 
-  /// Neighbouring cells go to different groups, so that a crowded region spreads over all of them.
-  [[nodiscard]] std::size_t group_of(CellIndex cell) const { return cell & (groups_ - 1); }
-
-  void push(std::size_t block, CellIndex cell, const CellOp<Scalar, Dim>& op) {
-    lists_[block * groups_ + group_of(cell)].push_back({cell, op});
-  }
-
-  [[nodiscard]] std::span<const Routed> list(std::size_t block, std::size_t group) const {
-    return lists_[block * groups_ + group];
+  /// Calls queued to a shard.
+  [[nodiscard]] std::size_t size(std::size_t shard) const {
+    std::size_t total = 0;
+    for (std::size_t block = 0; block < blocks_; ++block) total += lists_[block * shards_ + shard].size();
+    return total;
   }
 
   [[nodiscard]] std::size_t bytes() const {
-    std::size_t total = lists_.capacity() * sizeof(lists_[0]);
-    for (const auto& list : lists_) total += list.capacity() * sizeof(Routed);
+    std::size_t total = lists_.capacity() * sizeof(List);
+    for (const List& list : lists_) {
+      total += list.known.capacity() * sizeof(Known) + list.fresh.capacity() * sizeof(Fresh);
+    }
     return total;
   }
 
  private:
-  std::vector<std::vector<Routed>> lists_;  // [block][group]
+  template <class T>
+  static void clear(std::vector<T>& list) {
+    const std::size_t wanted = list.size() + list.size() / 8;
+    const bool wasteful = list.capacity() > 64 && wanted + wanted / 8 < list.capacity();
+    if (wasteful) std::vector<T>().swap(list);
+    list.clear();
+    if (wasteful) list.reserve(wanted);
+  }
+
+  std::vector<List> lists_;  // [block][shard]
   std::size_t blocks_ = 0;
-  std::size_t groups_ = 0;
+  std::size_t shards_ = 0;
 };
 
 }  // namespace sweepgrid

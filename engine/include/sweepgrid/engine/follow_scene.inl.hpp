@@ -1,0 +1,137 @@
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <vector>
+
+#include <sweepgrid/engine/engine_core.hpp>
+#include <sweepgrid/grid/grid_fit.inl.hpp>
+#include <sweepgrid/grid/levels.inl.hpp>
+
+namespace sweepgrid {
+
+// How the grids of an engine follow its scene.
+
+template <class Scalar, int Dim>
+void EngineCore<Scalar, Dim>::follow_scene() {
+  counting() ? follow_with_counts() : follow_with_levels();
+}
+
+template <class Scalar, int Dim>
+std::size_t EngineCore<Scalar, Dim>::grid_shards() const {
+  const auto workers = static_cast<std::size_t>(executor_->concurrency());
+  // Even for one worker, queues that fit into its cache gather faster.
+  const std::size_t parts = objects_.size() >> 17;
+  return std::bit_ceil(std::clamp<std::size_t>(std::max(parts, workers == 1 ? 1 : 4 * workers), 1, 1024));
+}
+
+template <class Scalar, int Dim>
+auto EngineCore<Scalar, Dim>::sample(std::size_t count) const -> std::vector<BoxType> {
+  std::vector<BoxType> boxes;
+  const std::size_t stride = std::max<std::size_t>(1, objects_.bound() / std::max<std::size_t>(1, count));
+  for (std::size_t object = 0; object < objects_.bound(); object += stride) {
+    const std::uint8_t state = objects_.state(static_cast<ObjectId>(object));
+    if (state != 0 && (state & Objects::kErased) == 0) {
+      boxes.push_back(objects_.record(static_cast<ObjectId>(object)).box);
+    }
+  }
+  return boxes;
+}
+
+template <class Scalar, int Dim>
+auto EngineCore<Scalar, Dim>::fit(const std::vector<BoxType>& boxes) const -> typename GridFit<Scalar, Dim>::Result {
+  GridFit<Scalar, Dim> fit;
+  fit.population = population();
+  fit.cell_size = config_.cell_size;
+  return fit.derive(boxes, objects_.size());
+}
+
+template <class Scalar, int Dim>
+int EngineCore<Scalar, Dim>::population() const {
+  if (config_.cell_population) return *config_.cell_population;
+  return config_.cell.kind == CellKind::kRows ? 6 : 48;  // measured, see grid/README.md
+}
+
+// All objects move to a new grid in this step, and events come from the difference of the two tables.
+template <class Scalar, int Dim>
+void EngineCore<Scalar, Dim>::follow_with_counts() {
+  if (gridded_ && !regrid_.outgrown(objects_.size()) && !regrid_.crowded()) return;
+  const auto result = fit(sample(GridFit<Scalar, Dim>::kSample));
+  if (gridded_ && !regrid_.outgrown(objects_.size()) && result.cell_size > 0.75 * levels_.cell_size()) {
+    return regrid_.resign();
+  }
+  levels_.start_single(GridFit<Scalar, Dim>::bounded(result, kMaxCells), config_.cell, grid_shards());
+  for (ObjectId object = 0; object < objects_.bound(); ++object) objects_.record(object).grid = levels_.finest();
+  regrid_.fitted(population(), objects_.size());
+  gridded_ = true;
+  regridding_ = true;
+  counters_.regrids = 1;
+}
+
+// New cells are for new objects and for those that change; the others follow over the next steps, a few in each.
+template <class Scalar, int Dim>
+void EngineCore<Scalar, Dim>::follow_with_levels() {
+  const std::size_t objects = objects_.size();
+  if (!gridded_) {
+    const auto boxes = sample(GridFit<Scalar, Dim>::kSample);
+    const auto result = fit(boxes);
+    start_family(result.cell_size, result.lower, boxes);
+    gridded_ = true;
+  } else if (!config_.cell_size && !relocation_.wanted) {
+    if (regrid_.outgrown(objects)) {
+      const std::size_t news = objects > objects_at_step_ ? objects - objects_at_step_ : 0;
+      const auto boxes = sample(std::clamp<std::size_t>(news / 2, 256, GridFit<Scalar, Dim>::kSample));
+      const auto result = fit(boxes);
+      const double change = result.cell_size / levels_.cell_size();
+      if (change > 1.3 || change < 0.75) {
+        start_family(result.cell_size, result.lower, boxes);
+        relocation_.wanted = true;
+      } else {
+        regrid_.fitted(population(), objects);
+      }
+    } else if (regrid_.crowded() || regrid_.sparse()) {
+      const auto boxes = sample(256);
+      const double size =
+          std::max(levels_.cell_size() * regrid_.factor(Dim), grid_fit::smallest_cell<Scalar, Dim>(boxes));
+      const double change = size / levels_.cell_size();
+      if (change > 1.25 || change < 0.8) {
+        start_family(size, levels_.origin(), boxes);
+        relocation_.wanted = true;
+      } else {
+        regrid_.resign();
+      }
+    }
+  }
+  if (levels_.make_room(objects_.widest()) && objects_at_step_ > 0) relocation_ = {true, 0, 0};
+  plan_relocation();
+  objects_at_step_ = objects;
+}
+
+template <class Scalar, int Dim>
+void EngineCore<Scalar, Dim>::start_family(double cell_size, const std::array<double, Dim>& origin,
+                                           const std::vector<BoxType>& boxes) {
+  levels_.start_family(cell_size, origin, config_.cell, grid_shards());
+  levels_.make_room(objects_.widest());
+  for (const BoxType& box : boxes) static_cast<void>(levels_.home(LevelsType::width(box)));  // asks for its level
+  levels_.make_room(objects_.widest());
+  regrid_.fitted(population(), objects_.size());
+  relocation_ = {};
+  counters_.regrids = 1;
+}
+
+// As many objects as the latest step changed, about: then no step takes much longer than it would have.
+template <class Scalar, int Dim>
+void EngineCore<Scalar, Dim>::plan_relocation() {
+  relocation_.first = relocation_.end;
+  if (!relocation_.wanted) return;
+  const std::uint32_t granules = objects_.granules();
+  if (relocation_.first >= granules) {
+    relocation_ = {};
+    return;
+  }
+  const std::uint64_t changed = last_changed_;
+  const auto share = static_cast<std::uint32_t>(std::max<std::uint64_t>(1, changed / 2 / Objects::kGranule));
+  relocation_.end = std::min(granules, relocation_.first + share);
+}
+
+}  // namespace sweepgrid

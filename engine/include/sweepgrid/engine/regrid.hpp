@@ -1,0 +1,52 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+namespace sweepgrid {
+
+/// When a scene has outgrown its cells. Judges by what ops meet in their cells, which is what they cost, and by the
+/// number of objects.
+class Regrid {
+ public:
+  /// `population`: centres that the cell of an object should hold beside its own.
+  void fitted(double population, std::size_t objects) {
+    // With the copies of boxes that cover several cells, an op meets nearly twice as many.
+    target_ = 2 * population;
+    objects_ = std::max<std::size_t>(objects, 32);
+    usual_ = 0;
+  }
+
+  /// Tells what the ops of a step met. Few ops say little.
+  void observe(double met, std::uint64_t ops) {
+    if (ops < 64) return;
+    met_ = met / static_cast<double>(ops);
+    if (usual_ == 0) usual_ = met_;
+  }
+
+  /// The scene is that crowded, whatever the cells.
+  void resign() { usual_ = met_; }
+
+  [[nodiscard]] bool crowded() const { return usual_ > 0 && met_ > 2.5 * std::max(usual_, target_); }
+  [[nodiscard]] bool sparse() const { return usual_ > 0 && met_ < 0.2 * std::min(usual_, target_); }
+
+  /// Twice or a quarter of the objects.
+  [[nodiscard]] bool outgrown(std::size_t objects) const {
+    return objects > 2 * objects_ || 4 * objects + 64 < objects_;
+  }
+
+  /// By how much cells should be wider or narrower.
+  [[nodiscard]] double factor(int dim) const {
+    return std::clamp(std::pow(target_ / std::max(met_, 0.1), 1.0 / dim), 0.25, 4.0);
+  }
+
+ private:
+  double target_ = 0;
+  double usual_ = 0;  // what ops met right after the fit; 0: not yet known
+  double met_ = 0;
+  std::size_t objects_ = 0;
+};
+
+}  // namespace sweepgrid

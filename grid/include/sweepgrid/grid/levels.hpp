@@ -1,0 +1,99 @@
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include <sweepgrid/grid/grid.hpp>
+#include <sweepgrid/grid/grid_spec.hpp>
+
+namespace sweepgrid {
+
+/// Number of a grid among those that exist.
+using GridIndex = std::uint8_t;
+
+/// The grids of a scene: a family of levels, each with cells four times as wide as the one before, so that a box is in
+/// few cells whatever its size; the last is one cell over everything. A level exists once a box asks for it. An object
+/// lives in one grid. While a scene moves to a family of other cell sizes, the grids of both exist.
+///
+/// Not thread-safe but for home(), which many may call at once.
+template <class Scalar, int Dim>
+class Levels {
+ public:
+  using GridType = Grid<Scalar, Dim>;
+  using BoxType = Box<Scalar, Dim>;
+  static constexpr GridIndex kNone = 255;
+
+  /// Longest edge of a box; infinite or NaN boxes are infinitely wide.
+  [[nodiscard]] static double width(const BoxType& box) {
+    double width = 0;
+    for (int axis = 0; axis < Dim; ++axis) {
+      const double edge = static_cast<double>(box.max[axis]) - static_cast<double>(box.min[axis]);
+      if (!(edge <= width)) width = edge;
+    }
+    return width == width ? width : std::numeric_limits<double>::infinity();
+  }
+
+  /// From now on, homes are in a new family. `shards`: of each of its grids.
+  void start_family(double cell_size, const std::array<double, Dim>& origin, const CellOptions& cells,
+                    std::size_t shards);
+  /// From now on, every home is in this one grid, and there are no others.
+  void start_single(const GridSpec<Scalar, Dim>& spec, const CellOptions& cells, std::size_t shards);
+
+  /// Makes the levels that were asked for, and sees to it that boxes up to this width have a home. Returns whether
+  /// there are new homes.
+  bool make_room(double widest);
+
+  /// Where a box of this width should live: the finest existing grid of the newest family that holds it.
+  /// Precondition: make_room() for as wide a box.
+  [[nodiscard]] GridIndex home(double width) const;
+  /// Whether a box of this width may stay in the grid: it is in few cells there.
+  [[nodiscard]] bool holds(GridIndex grid, double width) const { return width <= widest_[grid]; }
+
+  /// Cell size at the finest level.
+  [[nodiscard]] double cell_size() const { return cell_size_; }
+  [[nodiscard]] const std::array<double, Dim>& origin() const { return origin_; }
+  [[nodiscard]] GridIndex finest() const { return homes_[0]; }
+
+  [[nodiscard]] GridType& grid(GridIndex index) { return *grids_[index]; }
+  [[nodiscard]] const GridType& grid(GridIndex index) const { return *grids_[index]; }
+  /// Those that exist, in order of index.
+  [[nodiscard]] const std::vector<GridIndex>& live() const { return live_; }
+  /// A strict total order.
+  [[nodiscard]] bool coarser(GridIndex a, GridIndex b) const {
+    const double size_a = grids_[a]->spec().cell_size();
+    const double size_b = grids_[b]->spec().cell_size();
+    return size_a != size_b ? size_a > size_b : a > b;
+  }
+
+  /// Drops the grids that have no cell, but for the finest of the newest family. Returns how wide a box now has a home.
+  double drop_empty();
+
+ private:
+  static constexpr int kLevels = 16;  // the last is the one cell over everything
+  static constexpr double kRatio = 4;
+
+  [[nodiscard]] int level_of(double width) const;
+  GridIndex add(const GridSpec<Scalar, Dim>& spec, double widest);
+
+  CellOptions cells_;
+  std::size_t shards_ = 1;
+  double cell_size_ = 1;
+  std::array<double, Dim> origin_{};
+  std::array<GridIndex, kLevels> homes_ = none();  // of the newest family, by level
+  mutable std::atomic<std::uint32_t> wanted_ = 0;  // levels that a box would have lived in, by bit
+  std::vector<std::unique_ptr<GridType>> grids_;   // by index
+  std::vector<double> widest_;                     // by index: widest box that the grid is meant for
+  std::vector<GridIndex> live_;
+
+  static std::array<GridIndex, kLevels> none() {
+    std::array<GridIndex, kLevels> homes;
+    homes.fill(kNone);
+    return homes;
+  }
+};
+
+}  // namespace sweepgrid
