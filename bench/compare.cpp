@@ -97,7 +97,7 @@ std::vector<Contestant> chosen_contestants(const Options& options) {
 /// Prints the scene's table and adds its figures to `json`; false when a system is wrong.
 bool compare(const NamedScene& scene, const std::vector<Contestant>& contestants, const Options& options, Json& json) {
   const SceneScript script = read_script(scene.scene, options.steps);
-  fmt::print("{} ({})\n", scene.name, scene.scene);
+  fmt::print("{}\n", scene.name == scene.scene ? scene.name : fmt::format("{} ({})", scene.name, scene.scene));
   std::vector<Contestant> chosen;
   std::vector<std::string> skipped;
   for (const Contestant& contestant : contestants) {

@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include "cli/build_info.hpp"
 #include "cli/cell_names.hpp"
 #include "counter_table.hpp"
@@ -77,7 +79,7 @@ void register_all(const std::shared_ptr<ScriptCache>& cache) {
   for (const auto& [name, kind] : cell_kinds_by_name()) settings.push_back(name);
   for (const auto& [name, scene] : scenes) {
     for (const std::string& setting : settings) {
-      benchmark::RegisterBenchmark((name + "/" + setting).c_str(),
+      benchmark::RegisterBenchmark(fmt::format("{}/{}", name, setting).c_str(),
                                    [cache, scene = scene, config = engine_setting(setting).value()](auto& state) {
                                      play(state, cache->script(scene), config);
                                    })
