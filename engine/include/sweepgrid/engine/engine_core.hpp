@@ -112,11 +112,11 @@ class EngineCore {
   [[nodiscard]] bool most_changed(const std::vector<std::uint32_t>& granules) const;
   void route(std::size_t block);
   void route_granule(std::size_t block, std::uint32_t granule);
-  void route_object(std::size_t block, ObjectId object, RouteBlock& out);
-  void route_changed(std::size_t block, ObjectId object, RouteBlock& out);
-  void route_moved(std::size_t block, ObjectId object, RouteBlock& out);
+  void route_object(std::size_t block, ObjectId object, Record& record, RouteBlock& out);
+  void note_change(Record& record, std::uint8_t state) const;
+  void route_moved(std::size_t block, ObjectId object, Record& record, RouteBlock& out);
   void show(std::size_t block, ObjectId object, GridIndex home, const BoxType* before, const BoxType* after);
-  void relocate(std::size_t block, ObjectId object, RouteBlock& out);
+  void relocate(std::size_t block, ObjectId object, const Record& record, RouteBlock& out);
   void plan_gather(std::vector<std::uint64_t>& costs);
   void gather(std::size_t task);
   void plan_drain(std::vector<std::uint64_t>& costs);

@@ -4,7 +4,6 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <cstring>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -144,70 +143,72 @@ void EngineCore<Scalar, Dim>::route(std::size_t block) {
   }
 }
 
+// First the objects, then what is to be done with them: so their records can be on their way to the cache meanwhile.
 template <class Scalar, int Dim>
 void EngineCore<Scalar, Dim>::route_granule(std::size_t block, std::uint32_t granule) {
   objects_.unmark_granule(granule);
   const ObjectId first = granule * Objects::kGranule;
-  const ObjectId end = std::min(objects_.bound() - first, Objects::kGranule) + first;
-  const bool all = regridding_ || relocating(granule);
-  constexpr std::uint64_t kAnyQueued = 0x0101010101010101U * Objects::kQueued;
+  const std::uint32_t count = std::min(objects_.bound() - first, Objects::kGranule);
+  const std::uint8_t wanted = regridding_ || relocating(granule) ? 0xff : Objects::kQueued;
   const std::uint8_t* const states = &objects_.state(first);  // a granule is contiguous
-  for (ObjectId object = first; object < end; ++object) {
-    if (!all && object % 8 == 0 && object + 8 <= end) {
-      std::uint64_t eight;
-      std::memcpy(&eight, states + (object - first), sizeof(eight));
-      if ((eight & kAnyQueued) == 0) {
-        object += 7;
-        continue;
-      }
-    }
-    const std::uint8_t state = states[object - first];
-    if ((state & Objects::kQueued) != 0 || (all && state != 0)) route_object(block, object, blocks_[block]);
+  std::array<std::uint8_t, Objects::kGranule> chosen;
+  std::uint32_t used = 0;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    chosen[used] = static_cast<std::uint8_t>(i);
+    used += (states[i] & wanted) != 0 ? 1 : 0;
+  }
+  Record* const records = &objects_.record(first);
+  constexpr std::uint32_t kAhead = 12;
+  for (std::uint32_t i = 0; i < std::min(kAhead, used); ++i) __builtin_prefetch(&records[chosen[i]], 1);
+  for (std::uint32_t i = 0; i < used; ++i) {
+    if (i + kAhead < used) __builtin_prefetch(&records[chosen[i + kAhead]], 1);
+    route_object(block, first + chosen[i], records[chosen[i]], blocks_[block]);
   }
 }
 
 template <class Scalar, int Dim>
-void EngineCore<Scalar, Dim>::route_object(std::size_t block, ObjectId object, RouteBlock& out) {
+void EngineCore<Scalar, Dim>::route_object(std::size_t block, ObjectId object, Record& record, RouteBlock& out) {
   std::uint8_t& state = objects_.state(object);
-  if ((state & Objects::kQueued) != 0) {
-    const bool never_seen = (state & Objects::kInserted) != 0 && (state & Objects::kErased) != 0;
-    if (!never_seen) route_changed(block, object, out);
-    if ((state & Objects::kErased) != 0) {
+  if ((state & Objects::kQueued) == Objects::kUpdated) {
+    ++out.counters.updates;
+    note_change(record, state);
+    route_moved(block, object, record, out);
+    state = Objects::kLive;
+  } else if ((state & Objects::kQueued) != 0) {
+    const bool erased = (state & Objects::kErased) != 0;
+    if ((state & Objects::kInserted) == 0) {
+      note_change(record, state);
+      ++out.counters.erases;
+      if (!regridding_) levels_.grid(record.grid).route_erase(block, object, record.before);
+      show(block, object, record.grid, &record.before, nullptr);
+    } else if (!erased) {
+      note_change(record, state);
+      ++out.counters.inserts;
+      record.grid = levels_.home(LevelsType::width(record.box));
+      levels_.grid(record.grid).route_insert(block, object, record.box);
+      show(block, object, record.grid, nullptr, &record.box);
+    }
+    if (erased) {
       objects_.retire(object);
       out.retired.push_back(object);
       return;
     }
     state = Objects::kLive;
   } else if (regridding_) {
-    levels_.grid(objects_.record(object).grid).route_insert(block, object, objects_.record(object).box);
+    levels_.grid(record.grid).route_insert(block, object, record.box);
   }
-  if (relocating(object / Objects::kGranule)) relocate(block, object, out);
+  if (relocating(object / Objects::kGranule)) relocate(block, object, record, out);
 }
 
 template <class Scalar, int Dim>
-void EngineCore<Scalar, Dim>::route_changed(std::size_t block, ObjectId object, RouteBlock& out) {
-  Record& record = objects_.record(object);
-  record.change = objects_.state(object);
+void EngineCore<Scalar, Dim>::note_change(Record& record, std::uint8_t state) const {
+  record.change = state;
   record.changed_at = steps_ + 1;
   record.grid_before = record.grid;
-  if ((record.change & Objects::kInserted) != 0) {
-    ++out.counters.inserts;
-    record.grid = levels_.home(LevelsType::width(record.box));
-    levels_.grid(record.grid).route_insert(block, object, record.box);
-    show(block, object, record.grid, nullptr, &record.box);
-  } else if ((record.change & Objects::kErased) != 0) {
-    ++out.counters.erases;
-    if (!regridding_) levels_.grid(record.grid).route_erase(block, object, record.before);
-    show(block, object, record.grid, &record.before, nullptr);
-  } else {
-    ++out.counters.updates;
-    route_moved(block, object, out);
-  }
 }
 
 template <class Scalar, int Dim>
-void EngineCore<Scalar, Dim>::route_moved(std::size_t block, ObjectId object, RouteBlock& out) {
-  Record& record = objects_.record(object);
+void EngineCore<Scalar, Dim>::route_moved(std::size_t block, ObjectId object, Record& record, RouteBlock& out) {
   const double width = LevelsType::width(record.box);
   GridType& grid = levels_.grid(record.grid);
   if (regridding_) {
@@ -238,8 +239,7 @@ void EngineCore<Scalar, Dim>::show(std::size_t block, ObjectId object, GridIndex
 }
 
 template <class Scalar, int Dim>
-void EngineCore<Scalar, Dim>::relocate(std::size_t block, ObjectId object, RouteBlock& out) {
-  const Record& record = objects_.record(object);
+void EngineCore<Scalar, Dim>::relocate(std::size_t block, ObjectId object, const Record& record, RouteBlock& out) {
   const GridIndex home = levels_.home(LevelsType::width(record.box));
   if (home == record.grid) return;
   levels_.grid(record.grid).route_detach(block, object, record.box);

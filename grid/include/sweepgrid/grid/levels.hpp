@@ -1,10 +1,12 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <type_traits>
 #include <vector>
 
 #include <sweepgrid/grid/grid.hpp>
@@ -27,14 +29,14 @@ class Levels {
   using BoxType = Box<Scalar, Dim>;
   static constexpr GridIndex kNone = 255;
 
-  /// Longest edge of a box; infinite or NaN boxes are infinitely wide.
+  /// Longest edge of a box; infinite boxes are infinitely wide.
   [[nodiscard]] static double width(const BoxType& box) {
-    double width = 0;
+    Real width = 0;
     for (int axis = 0; axis < Dim; ++axis) {
-      const double edge = static_cast<double>(box.max[axis]) - static_cast<double>(box.min[axis]);
-      if (!(edge <= width)) width = edge;
+      width = std::max(width, static_cast<Real>(box.max[axis]) - static_cast<Real>(box.min[axis]));
     }
-    return width == width ? width : std::numeric_limits<double>::infinity();
+    // Infinity minus infinity is NaN, which max() passes over: then it is one of the other edges.
+    return static_cast<double>(width);
   }
 
   /// From now on, homes are in a new family. `shards`: of each of its grids.
@@ -73,6 +75,7 @@ class Levels {
   double drop_empty();
 
  private:
+  using Real = std::conditional_t<std::is_same_v<Scalar, float>, float, double>;
   static constexpr int kLevels = 16;  // the last is the one cell over everything
   static constexpr double kRatio = 4;
 

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <concepts>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <type_traits>
@@ -24,9 +26,11 @@ template <class Scalar>
   constexpr Bits kSign = Bits{1} << (8 * sizeof(Bits) - 1);
   if constexpr (std::floating_point<Scalar>) {
     static_assert(std::numeric_limits<Scalar>::is_iec559 && sizeof(Scalar) == sizeof(Bits));
+    // Without branches, so that a whole box is converted at once.
     Bits bits = std::bit_cast<Bits>(value);
-    if (bits == kSign) bits = 0;  // -0.0
-    return (bits & kSign) != 0 ? ~bits : bits | kSign;
+    bits = bits == kSign ? 0 : bits;  // -0.0
+    const Bits negative = Bits{0} - (bits >> (8 * sizeof(Bits) - 1));
+    return bits ^ (negative | kSign);
   } else if constexpr (std::signed_integral<Scalar>) {
     return static_cast<Bits>(static_cast<std::make_signed_t<Bits>>(value)) ^ kSign;
   } else {
@@ -45,10 +49,14 @@ struct OrderedBox {
 
   OrderedBox() = default;
   explicit OrderedBox(const Box<Scalar, Dim>& box) {
-    for (int axis = 0; axis < Dim; ++axis) {
-      min[axis] = ordered_bits(box.min[axis]);
-      max[axis] = ordered_bits(box.max[axis]);
-    }
+    // Side by side, so that vectors hold them.
+    std::array<Scalar, 2 * static_cast<std::size_t>(Dim)> from;
+    std::array<Bits, 2 * static_cast<std::size_t>(Dim)> to;
+    std::copy(box.min.begin(), box.min.end(), from.begin());
+    std::copy(box.max.begin(), box.max.end(), from.begin() + Dim);
+    for (int i = 0; i < 2 * Dim; ++i) to[i] = ordered_bits(from[i]);
+    std::copy(to.begin(), to.begin() + Dim, min.begin());
+    std::copy(to.begin() + Dim, to.end(), max.begin());
   }
 
   /// Overlap on every axis but `skipped`; pass -1 to skip none.
