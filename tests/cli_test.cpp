@@ -242,6 +242,9 @@ TEST_F(Program, ExitsWithTwoAndTheReasonWhenItCannotDoWhatItIsAskedFor) {
       {"run --cell-size nan " + scene, "--cell-size"},
       {"run --cell-size 5m " + scene, "--cell-size"},
       {"run --diameter nan " + scene, "--diameter"},
+      {"run --cell-population 0 " + scene, "--cell-population: '0' is not a positive whole number or 'auto'"},
+      {"run --cell-population 2.5 " + scene, "--cell-population"},
+      {"run --reduction sum " + scene, "--reduction"},
       {"run --segment-capacity 3 " + scene, "--segment-capacity"},
       {"run --scalar half " + scene, "--scalar"},
       {"run --steps -1 " + scene, "--steps"},
@@ -282,7 +285,9 @@ TEST_F(Program, GivesTheSameEventsForAllSettings) {
   const std::string expected = run("run --threads 1 --events - " + scenes).out;
   EXPECT_GT(std::count(expected.begin(), expected.end(), '\n'), 200);
   for (const char* settings : {"--threads 2", "--cell segmented --segment-capacity 4", "--cell classic --threads 3",
-                               "--cell plane", "--cell batch --cell-size 2.5", "--cell auto --cell-size auto"}) {
+                               "--cell plane", "--cell batch --cell-size 2.5", "--cell auto --cell-size auto",
+                               "--cell rows --reduction reporter", "--cell rows --reduction counts --threads 2",
+                               "--cell rows --cell-population 1", "--cell-population auto --reduction counts"}) {
     EXPECT_EQ(run(std::string("run --verify --events - ") + settings + " " + scenes).out, expected) << settings;
   }
 }
@@ -295,14 +300,19 @@ TEST_F(Program, VerifiesARecordingAndTellsAllInJson) {
   EXPECT_NE(result.err.find("0 missing, 0 extra, 0 duplicate, 0 spurious"), std::string::npos);
   const auto json = nlohmann::json::parse(result.out);
   EXPECT_EQ(json["schema"], "sweepgrid-run");
-  EXPECT_EQ(json["schema_version"], 1);
+  EXPECT_EQ(json["schema_version"], 2);
   EXPECT_EQ(json["settings"]["scalar"], "double");
+  EXPECT_EQ(json["settings"]["reduction"], "reporter");
+  EXPECT_EQ(json["settings"]["cell_population"], "auto");
   const auto& scene = json["scenes"].at(0);
   EXPECT_EQ(scene["objects"]["first"], 2150);
   EXPECT_EQ(scene["pairs"]["first"], 7362);
   EXPECT_EQ(scene["steps"], 10);
   EXPECT_EQ(scene["step_ms"]["samples"].size(), 10U);
   EXPECT_EQ(scene["verification"]["ok"], true);
+  EXPECT_GE(scene["grid"]["grids"], 1);
+  EXPECT_GT(scene["grid"]["cells"], 0);
+  EXPECT_GT(scene["grid"]["cell_size"], 0);
   EXPECT_EQ(scene["counters"]["begins"].get<int>() - scene["counters"]["ends"].get<int>(), scene["pairs"]["last"]);
 }
 

@@ -3,6 +3,7 @@
 #include <map>
 #include <string>
 
+#include <sweepgrid/engine/config.hpp>
 #include <sweepgrid/sap/cell_kind.hpp>
 
 namespace sweepgrid {
@@ -21,6 +22,15 @@ namespace sweepgrid {
     if (candidate == kind) return name;
   }
   return "?";
+}
+
+/// The ways from deltas to events as the command line calls them.
+[[nodiscard]] inline std::map<std::string, Reduction> reductions_by_name() {
+  return {{"reporter", Reduction::kSingleReporter}, {"counts", Reduction::kWitnessCounts}};
+}
+
+[[nodiscard]] inline std::string reduction_name(Reduction reduction) {
+  return reduction == Reduction::kWitnessCounts ? "counts" : "reporter";
 }
 
 }  // namespace sweepgrid

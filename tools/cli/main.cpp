@@ -52,6 +52,18 @@ CLI::Validator finite_number(bool zero_too, bool auto_too, const std::string& de
       description);
 }
 
+CLI::Validator whole_number_or_auto() {
+  return CLI::Validator(
+      [](std::string& text) -> std::string {
+        if (text == "auto") return "";
+        int value = 0;
+        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+        if (error == std::errc() && end == text.data() + text.size() && value > 0) return "";
+        return fmt::format("'{}' is not a positive whole number or 'auto'", text);
+      },
+      "auto|N");
+}
+
 // Options that both commands have.
 template <class Options>
 void add_scene_options(CLI::App& command, Options& options) {
@@ -69,6 +81,7 @@ void add_scene_options(CLI::App& command, Options& options) {
 struct RunTexts {
   std::string cell = "auto";
   std::string cell_size = "auto";
+  std::string cell_population = "auto";
 };
 
 CLI::App* add_run(CLI::App& app, RunOptions& options, RunTexts& texts) {
@@ -76,12 +89,19 @@ CLI::App* add_run(CLI::App& app, RunOptions& options, RunTexts& texts) {
   add_scene_options(*run, options);
   run->add_option("--threads", options.threads, "Workers; 0 (default): all cores, 1: none but the caller")
       ->check(CLI::NonNegativeNumber);
-  run->add_option("--cell", texts.cell, "Kind of the cells: auto|segmented|batch|classic|plane (default: auto)")
-      ->check(CLI::IsMember({"auto", "segmented", "batch", "classic", "plane"}).description(""));
-  run->add_option("--cell-size", texts.cell_size, "Edge of a grid cell, in the scene's units (default: auto)")
+  run->add_option("--cell", texts.cell, "Kind of the cells: auto|rows|segmented|batch|classic|plane (default: auto)")
+      ->check(CLI::IsMember({"auto", "rows", "segmented", "batch", "classic", "plane"}).description(""));
+  run->add_option("--cell-size", texts.cell_size,
+                  "Edge of the finest grid's cells, in the scene's units (default: auto)")
       ->check(finite_number(false, true, "auto|X"));
+  run->add_option("--cell-population", texts.cell_population,
+                  "Objects per cell that a derived cell size aims at (default: auto)")
+      ->check(whole_number_or_auto());
   run->add_option("--segment-capacity", options.segment_capacity, "Endpoints per segment, at least 4 (segmented)")
       ->check(CLI::Range(4, 1 << 30).description(""));
+  run->add_option("--reduction", options.reduction,
+                  "How deltas become events: reporter (default; one cell reports each) or counts (of witnesses)")
+      ->transform(CLI::CheckedTransformer(reductions_by_name()).description("reporter|counts"));
   run->add_option("--events", options.events_path, kEventsHelp)->type_name("FILE");
   run->add_option("--json", options.json_path, "Write all results to FILE (see tools/README.md); - is stdout")
       ->type_name("FILE");
@@ -93,6 +113,7 @@ CLI::App* add_run(CLI::App& app, RunOptions& options, RunTexts& texts) {
 void complete(RunOptions& options, const RunTexts& texts) {
   if (texts.cell != "auto") options.cell = cell_kinds_by_name().at(texts.cell);
   if (texts.cell_size != "auto") options.cell_size = std::stod(texts.cell_size);
+  if (texts.cell_population != "auto") options.cell_population = std::stoi(texts.cell_population);
   if (options.events_path == "-" && options.json_path == "-") {
     throw CLI::ValidationError("--events and --json cannot both be the standard output");
   }

@@ -13,7 +13,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int kSchemaVersion = 1;
+constexpr int kSchemaVersion = 2;
 
 template <class T>
 Json optional_json(const std::optional<T>& value) {
@@ -42,7 +42,9 @@ Json settings_json(const RunOptions& options, int workers) {
           {"workers", workers},
           {"cell", options.cell ? cell_name(*options.cell) : "auto"},
           {"cell_size", options.cell_size ? Json(*options.cell_size) : Json("auto")},
+          {"cell_population", options.cell_population ? Json(*options.cell_population) : Json("auto")},
           {"segment_capacity", optional_json(options.segment_capacity)},
+          {"reduction", reduction_name(options.reduction.value_or(Reduction::kSingleReporter))},
           {"scalar", options.scalar == ScalarKind::kFloat ? "float" : "double"},
           {"steps", optional_json(options.steps)},
           {"diameter", optional_json(options.scene.diameter)},
@@ -124,7 +126,7 @@ Json result_json(const SceneResult& result) {
             {"cells", stats.bytes_cells},
             {"queues", stats.bytes_queues},
             {"witnesses", stats.bytes_witnesses}}},
-          {"grid", {{"cells", stats.cells}, {"occupied_cells", stats.occupied_cells}, {"cell_size", stats.cell_size}}},
+          {"grid", {{"grids", stats.grids}, {"cells", stats.cells}, {"cell_size", stats.cell_size}}},
           {"counters", counters_json(stats.total)},
           {"verification", verification_json(result.verification)}};
 }

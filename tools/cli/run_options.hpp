@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include <sweepgrid/engine/config.hpp>
 #include <sweepgrid/sap/cell_kind.hpp>
 
 #include "scenes/open_scene.hpp"
@@ -20,7 +21,9 @@ struct RunOptions {
   int threads = 0;
   std::optional<CellKind> cell;
   std::optional<double> cell_size;
+  std::optional<int> cell_population;
   std::optional<int> segment_capacity;
+  std::optional<Reduction> reduction;
   ScalarKind scalar = ScalarKind::kFloat;
   std::optional<std::uint64_t> steps;  ///< at most so many after the start
   std::string events_path;             ///< empty: none

@@ -30,6 +30,8 @@ Config<Scalar, Dim> config_of(const RunOptions& options, const std::shared_ptr<E
   if (options.cell) config.cell.kind = *options.cell;
   if (options.segment_capacity) config.cell.segment_capacity = *options.segment_capacity;
   config.cell_size = options.cell_size;
+  config.cell_population = options.cell_population;
+  if (options.reduction) config.reduction = *options.reduction;
   config.executor = executor;
   return config;
 }
