@@ -12,23 +12,37 @@
 
 #include <sweepgrid/sap/row_kernels.hpp>
 
+#include "row_boxes-inl.hpp"
+
 #ifndef SWEEPGRID_ROW_KERNELS_ONCE
 #define SWEEPGRID_ROW_KERNELS_ONCE
 namespace sweepgrid {
 
-/// The places of a drain's ops. On the stack unless they are many.
-class Places {
+/// What one op changes among neighbouring places, at most 16: a bit for each pair that does, and above them one for
+/// each that overlaps now.
+using Hits = std::uint32_t;
+
+/// For each op of a drain its object's place and what it hits. On the stack unless they are many.
+class Scratch {
  public:
-  explicit Places(std::size_t ops) {
-    if (ops > few_.size()) many_ = std::make_unique_for_overwrite<std::uint32_t[]>(ops);
-    data_ = many_ ? many_.get() : few_.data();
+  explicit Scratch(std::size_t ops) : entries_(few_) {
+    if (ops > kFew) [[unlikely]] {
+      many_ = std::make_unique_for_overwrite<Entry[]>(ops);
+      entries_ = many_.get();
+    }
   }
-  std::uint32_t& operator[](std::size_t op) { return data_[op]; }
+  std::uint32_t& place(std::size_t op) { return entries_[op].place; }
+  Hits& hits(std::size_t op) { return entries_[op].hits; }
 
  private:
-  std::array<std::uint32_t, 256> few_;
-  std::unique_ptr<std::uint32_t[]> many_;
-  std::uint32_t* data_;
+  struct Entry {
+    std::uint32_t place;
+    Hits hits;
+  };
+  static constexpr std::size_t kFew = 256;
+  Entry few_[kFew];  // not initialised on purpose
+  std::unique_ptr<Entry[]> many_;
+  Entry* entries_;
 };
 
 /// How many ops of each kind a drain has.
@@ -42,10 +56,12 @@ struct Tally {
 inline std::uint64_t pairs(std::uint64_t count) { return count * (count - (count != 0 ? 1 : 0)) / 2; }
 
 /// Calls SWEEPGRID_ROW_KERNELS for every width and number of axes that kernels are compiled for.
-#define SWEEPGRID_ALL_ROW_KERNELS                                                                                     \
-  SWEEPGRID_ROW_KERNELS(32, 1)                                                                                        \
-  SWEEPGRID_ROW_KERNELS(32, 2) SWEEPGRID_ROW_KERNELS(32, 3) SWEEPGRID_ROW_KERNELS(32, 4) SWEEPGRID_ROW_KERNELS(64, 1) \
-      SWEEPGRID_ROW_KERNELS(64, 2) SWEEPGRID_ROW_KERNELS(64, 3) SWEEPGRID_ROW_KERNELS(64, 4)
+#define SWEEPGRID_ALL_ROW_KERNELS \
+  SWEEPGRID_ROW_KERNELS(32, 1)    \
+  SWEEPGRID_ROW_KERNELS(32, 2)    \
+  SWEEPGRID_ROW_KERNELS(32, 3)    \
+  SWEEPGRID_ROW_KERNELS(32, 4)    \
+  SWEEPGRID_ROW_KERNELS(64, 1) SWEEPGRID_ROW_KERNELS(64, 2) SWEEPGRID_ROW_KERNELS(64, 3) SWEEPGRID_ROW_KERNELS(64, 4)
 
 }  // namespace sweepgrid
 #endif  // SWEEPGRID_ROW_KERNELS_ONCE
@@ -53,28 +69,6 @@ inline std::uint64_t pairs(std::uint64_t count) { return count * (count - (count
 HWY_BEFORE_NAMESPACE();
 namespace sweepgrid::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
-
-/// A set of lanes, one bit each.
-using Lanes = std::uint32_t;
-constexpr std::uint32_t kMaxLanes = 16;
-
-/// The lanes of a block of rows that begins at place `first` whose places are below `end`.
-HWY_INLINE Lanes lanes_below(std::uint32_t first, std::uint32_t end) {
-  return end <= first ? 0 : end - first >= 32 ? ~Lanes{0} : (Lanes{1} << (end - first)) - 1;
-}
-
-template <class D, class Mask>
-HWY_INLINE Lanes lanes_of(D d, Mask mask) {
-  std::uint8_t bytes[8];
-  hn::StoreMaskBits(d, mask, bytes);
-  if constexpr (hn::MaxLanes(D()) > 8) {
-    std::uint16_t lanes;
-    std::memcpy(&lanes, bytes, sizeof(lanes));
-    return lanes;
-  } else {
-    return bytes[0];
-  }
-}
 
 /// Appends a delta for every lane in `changed`: +1 if it is in `is`, otherwise -1.
 HWY_INLINE void report(ObjectId object, const ObjectId* others, Lanes changed, Lanes is,
@@ -90,68 +84,44 @@ struct Kernels {
   using Block = RowBlock<Bits, Dim>;
   using Ops = OpViews<Bits, Dim>;
   using Visits = VisitViews<Bits, Dim>;
-  using Value = typename Block::Value;
-  using D = hn::CappedTag<Value, kMaxLanes>;
-  using V = hn::Vec<D>;
+  using Box = Boxes<Bits, Dim>;
   using IdTag = hn::CappedTag<ObjectId, kMaxLanes>;
-  static constexpr std::uint32_t kLanes = hn::MaxLanes(D());
-  static constexpr Lanes kAll = (Lanes{1} << kLanes) - 1;
+  static constexpr std::uint32_t kLanes = Box::kLanes;
   static constexpr std::uint32_t kIdLanes = hn::MaxLanes(IdTag());
-  static constexpr int kRows = Block::kValueRows;
   static constexpr std::uint32_t kAbsent = 0xffffffffU;
 
-  /// One vector for each row of values: the boxes of neighbouring places, or one box in every lane.
-  struct Boxes {
-    V rows[kRows];
-  };
-
-  static HWY_INLINE Boxes load(const Block& block, std::uint32_t first) {
-    Boxes boxes;
-    for (int row = 0; row < kRows; ++row) boxes.rows[row] = hn::LoadU(D(), block.row(row) + first);
-    return boxes;
-  }
-
-  static HWY_INLINE Boxes everywhere(const Block& block, std::uint32_t place) {
-    Boxes boxes;
-    for (int row = 0; row < kRows; ++row) boxes.rows[row] = hn::Set(D(), block.row(row)[place]);
-    return boxes;
-  }
-
-  static HWY_INLINE Boxes everywhere(const Bits* box) {
-    const V flip = hn::Set(D(), static_cast<Value>(Block::kFlip));
-    Boxes boxes;
-    for (int row = 0; row < kRows; ++row) {
-      boxes.rows[row] = hn::Xor(hn::Set(D(), static_cast<Value>(box[row])), flip);
-    }
-    return boxes;
-  }
-
-  static HWY_INLINE Lanes overlaps(const Boxes& a, const Boxes& b) {
-    auto apart = hn::Or(hn::Gt(a.rows[0], b.rows[Dim]), hn::Gt(b.rows[0], a.rows[Dim]));
-    for (int axis = 1; axis < Dim; ++axis) {
-      apart = hn::Or(apart, hn::Or(hn::Gt(a.rows[axis], b.rows[Dim + axis]), hn::Gt(b.rows[axis], a.rows[Dim + axis])));
-    }
-    return ~lanes_of(D(), apart) & kAll;
+  /// The places in `first` and the next that hold an object, one bit each.
+  static HWY_INLINE Lanes places_of(const Block& block, ObjectId object, std::uint32_t first) {
+    return lanes_of(IdTag(), hn::Eq(hn::LoadU(IdTag(), block.ids() + first), hn::Set(IdTag(), object)));
   }
 
   /// The place of an object, or kAbsent.
   static HWY_INLINE std::uint32_t find(const Block& block, ObjectId object) {
-    const auto wanted = hn::Set(IdTag(), object);
     const std::uint32_t size = block.size();
-    for (std::uint32_t first = 0; first < size; first += kIdLanes) {
-      const Lanes found =
-          lanes_of(IdTag(), hn::Eq(hn::LoadU(IdTag(), block.ids() + first), wanted)) & lanes_below(first, size);
+    if (size == 0) return kAbsent;
+    if (size <= kIdLanes) {
+      const Lanes found = places_of(block, object, 0) & lanes_below(0, size);
+      return found != 0 ? static_cast<std::uint32_t>(std::countr_zero(found)) : kAbsent;
+    }
+    // Four vectors to a branch, because the branch that ends the search cannot be foretold. The rows of values behind
+    // the ids are long enough to be read in place of missing ids.
+    for (std::uint32_t first = 0; first < size; first += 4 * kIdLanes) {
+      std::uint64_t found = 0;
+      for (std::uint32_t part = 0; part < 4; ++part) {
+        found |= std::uint64_t{places_of(block, object, first + part * kIdLanes)} << (part * kIdLanes);
+      }
+      if (size - first < 64) found &= (std::uint64_t{1} << (size - first)) - 1;
       if (found != 0) return first + static_cast<std::uint32_t>(std::countr_zero(found));
     }
     return kAbsent;
   }
 
   /// Looks every object up. Returns the index of an op that is to be refused, or the number of ops.
-  static HWY_INLINE std::size_t resolve(const Block& block, Ops ops, Places& places, Tally& tally) {
+  static HWY_INLINE std::size_t resolve(const Block& block, Ops ops, Scratch& scratch, Tally& tally) {
     for (std::size_t index = 0; index < ops.size(); ++index) {
       const auto op = ops[index];
-      places[index] = find(block, op.object());
-      if ((places[index] == kAbsent) != (op.kind() == OpKind::kInsert)) return index;
+      scratch.place(index) = find(block, op.object());
+      if ((scratch.place(index) == kAbsent) != (op.kind() == OpKind::kInsert)) return index;
       tally.inserts += op.kind() == OpKind::kInsert ? 1 : 0;
       tally.erases += op.kind() == OpKind::kErase ? 1 : 0;
     }
@@ -160,100 +130,113 @@ struct Kernels {
   }
 
   /// Reports the pairs that cease with the erased objects, each once.
-  static void part(const Block& block, Ops ops, Places& places, std::vector<OverlapDelta>& deltas) {
+  static void part(const Block& block, Ops ops, Scratch& scratch, std::vector<OverlapDelta>& deltas) {
     for (std::uint32_t first = 0; first < block.size(); first += kLanes) {
-      const Boxes boxes = load(block, first);
+      const Box boxes = Box::load(block, first);
       Lanes open = lanes_below(first, block.size());
       for (std::size_t index = 0; index < ops.size(); ++index) {
         const auto op = ops[index];
         if (op.kind() != OpKind::kErase) continue;
-        open &= ~(lanes_below(first, places[index] + 1) ^ lanes_below(first, places[index]));
-        const Lanes ends = overlaps(everywhere(block, places[index]), boxes) & open;
+        open &= ~(lanes_below(first, scratch.place(index) + 1) ^ lanes_below(first, scratch.place(index)));
+        const Lanes ends = boxes.overlaps(Box::at(block, scratch.place(index))) & open;
         report(op.object(), block.ids() + first, ends, 0, deltas);
       }
     }
   }
 
-  static void remove(Block& block, Ops ops, Places& places) {
+  static void remove(Block& block, Ops ops, Scratch& scratch) {
     for (std::size_t index = 0; index < ops.size(); ++index) {
       if (ops[index].kind() != OpKind::kErase) continue;
-      block.remove(places[index]);
+      block.remove(scratch.place(index));
       // The last object moved there.
       for (std::size_t other = 0; other < ops.size(); ++other) {
-        if (places[other] == block.size()) places[other] = places[index];
+        if (scratch.place(other) == block.size()) scratch.place(other) = scratch.place(index);
       }
     }
   }
 
   /// Gives the inserted objects places; their values are yet to be written.
-  static HWY_INLINE void append(Block& block, Ops ops, Places& places) {
+  static HWY_INLINE void append(Block& block, Ops ops, Scratch& scratch) {
     for (std::size_t index = 0; index < ops.size(); ++index) {
       const auto op = ops[index];
-      if (op.kind() == OpKind::kInsert) places[index] = block.append(op.object());
+      if (op.kind() == OpKind::kInsert) scratch.place(index) = block.append(op.object());
     }
   }
 
-  static HWY_INLINE void write(Block& block, Ops ops, Places& places) {
+  static HWY_INLINE void write(Block& block, Ops ops, Scratch& scratch) {
     for (std::size_t index = 0; index < ops.size(); ++index) {
       const auto op = ops[index];
       if (op.kind() == OpKind::kErase) continue;
-      for (int row = 0; row < kRows; ++row) block.set_bits(row, places[index], op.box()[row]);
+      for (int row = 0; row < Block::kValueRows; ++row) block.set_bits(row, scratch.place(index), op.box()[row]);
     }
   }
 
   /// Reports how pairs change with the updated and inserted objects, each once, and writes the new boxes. `known`: the
   /// number of objects that have boxes; the inserted ones follow.
-  static HWY_INLINE void change(Block& block, std::uint32_t known, Ops ops, Places& places,
+  static HWY_INLINE void change(Block& block, std::uint32_t known, Ops ops, Scratch& scratch,
                                 std::vector<OverlapDelta>& deltas) {
-    for (std::uint32_t first = 0; first < block.size(); first += kLanes) {
-      const Boxes old_boxes = load(block, first);
-      Boxes new_boxes = old_boxes;
-      for (std::size_t index = 0; index < ops.size(); ++index) {
-        const auto op = ops[index];
-        const std::uint32_t lane = places[index] - first;
-        if (lane >= kLanes || op.kind() == OpKind::kErase) continue;
-        const auto own = hn::Eq(hn::Iota(D(), 0), hn::Set(D(), static_cast<Value>(lane)));
-        const Boxes box = everywhere(op.box());
-        for (int row = 0; row < kRows; ++row) {
-          new_boxes.rows[row] = hn::IfThenElse(own, box.rows[row], new_boxes.rows[row]);
-        }
-      }
-      const Lanes had_box = lanes_below(first, known);
-      const Lanes has_box = lanes_below(first, block.size());
-      Lanes open = ~Lanes{0};
-      for (std::size_t index = 0; index < ops.size(); ++index) {
-        const auto op = ops[index];
-        if (op.kind() == OpKind::kErase) continue;
-        const std::uint32_t lane = places[index] - first;
-        open &= ~(lane < kLanes ? Lanes{1} << lane : 0);
-        const Lanes was = places[index] >= known ? 0 : overlaps(everywhere(block, places[index]), old_boxes) & had_box;
-        const Lanes is = overlaps(everywhere(op.box()), new_boxes) & has_box;
-        report(op.object(), block.ids() + first, (was ^ is) & open, is, deltas);
-      }
-      if (block.size() <= kLanes) {
-        // In this order: each row's vector spills over into the next row.
-        for (int row = 0; row < kRows; ++row) hn::StoreU(new_boxes.rows[row], D(), block.row(row));
-        return;
-      }
+    if (block.size() <= kLanes) {
+      change_lanes<true>(block, 0, known, ops, scratch, deltas);
+      return;
     }
-    write(block, ops, places);
+    for (std::uint32_t first = 0; first < block.size(); first += kLanes) {
+      change_lanes<false>(block, first, known, ops, scratch, deltas);
+    }
+    write(block, ops, scratch);
+  }
+
+  template <bool kAlone>
+  static HWY_INLINE void change_lanes(Block& block, std::uint32_t first, std::uint32_t known, Ops ops, Scratch& scratch,
+                                      std::vector<OverlapDelta>& deltas) {
+    const Box old_boxes = Box::load(block, first);
+    Box new_boxes = old_boxes;
+    for (std::size_t index = 0; index < ops.size(); ++index) {
+      const auto op = ops[index];
+      if (op.kind() == OpKind::kErase) continue;
+      // No branch for a place elsewhere: it could not be foretold, and there is no such lane.
+      new_boxes.set(scratch.place(index) - first, Box::everywhere(op.box()));
+    }
+    const Lanes had_box = lanes_below(first, known);
+    const Lanes has_box = lanes_below(first, block.size());
+    Lanes open = Box::kAll;
+    for (std::size_t index = 0; index < ops.size(); ++index) {
+      const auto op = ops[index];
+      if (op.kind() == OpKind::kErase) {
+        scratch.hits(index) = 0;
+        continue;
+      }
+      const std::uint32_t place = scratch.place(index);
+      const std::uint32_t lane = place - first;
+      open &= ~(Lanes{kAlone || lane < kLanes} << (lane % 32));
+      const Lanes was = old_boxes.overlaps(Box::at(block, place)) & (place < known ? had_box : 0);
+      const Lanes is = new_boxes.overlaps(Box::everywhere(op.box())) & has_box;
+      scratch.hits(index) = ((was ^ is) & open) | is << 16;
+    }
+    if constexpr (kAlone) {
+      new_boxes.store(block, first);
+    }
+    // Apart from the loop above, so that no call comes between its vectors and their registers.
+    for (std::size_t index = 0; index < ops.size(); ++index) {
+      const Lanes changed = scratch.hits(index) & 0xffff;
+      if (changed != 0) report(ops[index].object(), block.ids() + first, changed, scratch.hits(index) >> 16, deltas);
+    }
   }
 
   static std::size_t drain(Block& block, Ops ops, std::vector<OverlapDelta>& deltas, SapCounters& counters) {
-    Places places(ops.size());
+    Scratch scratch(ops.size());
     Tally tally;
-    const std::size_t refused = resolve(block, ops, places, tally);
+    const std::size_t refused = resolve(block, ops, scratch, tally);
     if (refused != ops.size()) return refused;
     block.reserve(block.size() - tally.erases + tally.inserts);
     const std::size_t deltas_before = deltas.size();
     const std::uint32_t old_size = block.size();
     if (tally.erases != 0) {
-      part(block, ops, places, deltas);
-      remove(block, ops, places);
+      part(block, ops, scratch, deltas);
+      remove(block, ops, scratch);
     }
     const std::uint32_t known = block.size();
-    if (tally.inserts != 0) append(block, ops, places);
-    if (tally.inserts + tally.updates != 0) change(block, known, ops, places, deltas);
+    if (tally.inserts != 0) append(block, ops, scratch);
+    if (tally.inserts + tally.updates != 0) change(block, known, ops, scratch, deltas);
     block.fit();
     counters.deltas += deltas.size() - deltas_before;
     counters.box_tests +=
@@ -262,14 +245,14 @@ struct Kernels {
   }
 
   static std::size_t transfer(Block& block, Ops ops) {
-    Places places(ops.size());
+    Scratch scratch(ops.size());
     Tally tally;
-    const std::size_t refused = resolve(block, ops, places, tally);
+    const std::size_t refused = resolve(block, ops, scratch, tally);
     if (refused != ops.size()) return refused;
     block.reserve(block.size() - tally.erases + tally.inserts);
-    if (tally.erases != 0) remove(block, ops, places);
-    append(block, ops, places);
-    write(block, ops, places);
+    if (tally.erases != 0) remove(block, ops, scratch);
+    append(block, ops, scratch);
+    write(block, ops, scratch);
     block.fit();
     return ops.size();
   }
@@ -281,13 +264,13 @@ struct Kernels {
       const auto visit = visits[index];
       const Lanes if_was = visit.was() ? ~Lanes{0} : 0;
       const Lanes if_is = visit.is() ? ~Lanes{0} : 0;
-      const Boxes before = everywhere(visit.before());
-      const Boxes after = everywhere(visit.after());
+      const Box before = Box::everywhere(visit.before());
+      const Box after = Box::everywhere(visit.after());
       boxes_compared += (if_was & 1) + (if_is & 1);
       for (std::uint32_t first = 0; first < block.size(); first += kLanes) {
-        const Boxes boxes = load(block, first);
-        const Lanes was = overlaps(before, boxes) & if_was;
-        const Lanes is = overlaps(after, boxes) & if_is;
+        const Box boxes = Box::load(block, first);
+        const Lanes was = boxes.overlaps(before) & if_was;
+        const Lanes is = boxes.overlaps(after) & if_is;
         report(visit.object(), block.ids() + first, (was ^ is) & lanes_below(first, block.size()), is, deltas);
       }
     }

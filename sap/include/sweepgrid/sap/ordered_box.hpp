@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <bit>
 #include <concepts>
@@ -52,11 +51,9 @@ struct OrderedBox {
     // Side by side, so that vectors hold them.
     std::array<Scalar, 2 * static_cast<std::size_t>(Dim)> from;
     std::array<Bits, 2 * static_cast<std::size_t>(Dim)> to;
-    std::copy(box.min.begin(), box.min.end(), from.begin());
-    std::copy(box.max.begin(), box.max.end(), from.begin() + Dim);
+    for (int axis = 0; axis < Dim; ++axis) from[axis] = box.min[axis], from[Dim + axis] = box.max[axis];
     for (int i = 0; i < 2 * Dim; ++i) to[i] = ordered_bits(from[i]);
-    std::copy(to.begin(), to.begin() + Dim, min.begin());
-    std::copy(to.begin() + Dim, to.end(), max.begin());
+    for (int axis = 0; axis < Dim; ++axis) min[axis] = to[axis], max[axis] = to[Dim + axis];
   }
 
   /// Overlap on every axis but `skipped`; pass -1 to skip none.
