@@ -411,7 +411,8 @@ void EngineCore<Scalar, Dim>::finish_step() {
     levels_.grid(task.grid).drop_empty(task.shard, task.out.emptied);
   }
   last_changed_ = counters_.inserts + counters_.updates + counters_.erases;
-  if (levels_.live().size() > 1) objects_.set_widest(std::min(objects_.widest(), levels_.drop_empty()));
+  if (levels_.live().size() > 1)
+    objects_.set_widest(std::min(objects_.widest(), levels_.drop_empty(!relocation_.wanted)));
 }
 
 template <class Scalar, int Dim>

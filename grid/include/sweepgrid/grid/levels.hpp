@@ -71,8 +71,9 @@ class Levels {
     return size_a != size_b ? size_a > size_b : a > b;
   }
 
-  /// Drops the grids that have no cell, but for the finest of the newest family. Returns how wide a box now has a home.
-  double drop_empty();
+  /// Drops the grids that have no cell: of older families, and if `homes_too` of the newest, but for its finest. Those
+  /// of the newest are to stay as long as objects are on their way to them. Returns how wide a box now has a home.
+  double drop_empty(bool homes_too);
 
  private:
   using Real = std::conditional_t<std::is_same_v<Scalar, float>, float, double>;

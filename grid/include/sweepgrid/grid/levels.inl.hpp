@@ -80,9 +80,11 @@ GridIndex Levels<Scalar, Dim>::home(double width) const {
 }
 
 template <class Scalar, int Dim>
-double Levels<Scalar, Dim>::drop_empty() {
+double Levels<Scalar, Dim>::drop_empty(bool homes_too) {
   std::erase_if(live_, [&](GridIndex index) {
     if (index == homes_[0] || grids_[index]->cell_count() > 0) return false;
+    const bool is_home = std::find(homes_.begin(), homes_.end(), index) != homes_.end();
+    if (is_home && !homes_too) return false;
     std::replace(homes_.begin(), homes_.end(), index, kNone);
     grids_[index].reset();
     return true;
