@@ -7,6 +7,7 @@
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -55,7 +56,7 @@ class LoneExecutor final : public Executor {
 
 struct SceneLoad {
   std::vector<std::string> stage_names;
-  std::vector<TaskLoad> steps;  // without the start
+  std::vector<TaskLoad> steps;  // those after the start in which anything changes
 };
 
 SceneLoad load_of(const SceneScript& script, const Options& options) {
@@ -63,21 +64,24 @@ SceneLoad load_of(const SceneScript& script, const Options& options) {
   config.threads = options.threads;
   if (options.alone) config.executor = std::make_shared<LoneExecutor>(options.threads);
   SceneLoad load;
-  load.steps.resize(script.steps.size() - 1);
   for (int run = 0; run < options.runs; ++run) {
     EngineSystem system(config, false, script.objects);
     load.stage_names = system.engine().stage_names();
     system.engine().record_tasks(true);
-    for (std::size_t step = 0; step < script.steps.size(); ++step) {
+    std::size_t busy_steps = 0;
+    for (const ScriptStep& step : script.steps) {
+      if (step.changes() == 0) continue;  // has no tasks
       const Stopwatch whole;
-      system.queue(script.steps[step]);
+      system.queue(step);
       const double queue_seconds = whole.seconds();
       system.step();
-      if (step > 0) {
-        load.steps[step - 1].add_run(system.engine().tasks(), queue_seconds, whole.seconds() - queue_seconds);
-      }
+      const double step_seconds = whole.seconds() - queue_seconds;
+      if (&step == &script.steps.front()) continue;
+      if (load.steps.size() == busy_steps) load.steps.emplace_back();
+      load.steps[busy_steps++].add_run(system.engine().tasks(), queue_seconds, step_seconds);
     }
   }
+  if (load.steps.empty()) throw std::runtime_error(script.scene + ": nothing changes after the start");
   return load;
 }
 
