@@ -70,12 +70,21 @@ HWY_BEFORE_NAMESPACE();
 namespace sweepgrid::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Appends a delta for every lane in `changed`: +1 if it is in `is`, otherwise -1.
-HWY_INLINE void report(ObjectId object, const ObjectId* others, Lanes changed, Lanes is,
-                       std::vector<OverlapDelta>& deltas) {
-  for (; changed != 0; changed &= changed - 1) {
+/// Appends a delta for every pair that an object changes.
+HWY_NOINLINE void report(ObjectId object, const ObjectId* others, Hits hits, std::vector<OverlapDelta>& deltas) {
+  for (Lanes changed = hits & 0xffff; changed != 0; changed &= changed - 1) {
     const int lane = std::countr_zero(changed);
-    deltas.push_back({PairKey(object, others[lane]), (is >> lane & 1) != 0 ? +1 : -1});
+    deltas.push_back({PairKey(object, others[lane]), (hits >> (16 + lane) & 1) != 0 ? +1 : -1});
+  }
+}
+
+/// Reports what ops or visits change. In a loop of its own, because a call between vector operations would force their
+/// registers into memory.
+template <class Views>
+HWY_INLINE void report(Scratch& scratch, Views views, const ObjectId* others, std::vector<OverlapDelta>& deltas) {
+  for (std::size_t index = 0; index < views.size(); ++index) {
+    const Hits hits = scratch.hits(index);
+    if ((hits & 0xffff) != 0) report(views[index].object(), others, hits, deltas);
   }
 }
 
@@ -130,21 +139,23 @@ struct Kernels {
   }
 
   /// Reports the pairs that cease with the erased objects, each once.
-  static void part(const Block& block, Ops ops, Scratch& scratch, std::vector<OverlapDelta>& deltas) {
+  static HWY_NOINLINE void part(const Block& block, Ops ops, Scratch& scratch, std::vector<OverlapDelta>& deltas) {
     for (std::uint32_t first = 0; first < block.size(); first += kLanes) {
       const Box boxes = Box::load(block, first);
       Lanes open = lanes_below(first, block.size());
       for (std::size_t index = 0; index < ops.size(); ++index) {
         const auto op = ops[index];
+        scratch.hits(index) = 0;
         if (op.kind() != OpKind::kErase) continue;
-        open &= ~(lanes_below(first, scratch.place(index) + 1) ^ lanes_below(first, scratch.place(index)));
-        const Lanes ends = boxes.overlaps(Box::at(block, scratch.place(index))) & open;
-        report(op.object(), block.ids() + first, ends, 0, deltas);
+        const std::uint32_t lane = scratch.place(index) - first;
+        open &= ~(Lanes{lane < kLanes} << (lane % 32));
+        scratch.hits(index) = boxes.overlaps(Box::at(block, scratch.place(index))) & open;
       }
+      report(scratch, ops, block.ids() + first, deltas);
     }
   }
 
-  static void remove(Block& block, Ops ops, Scratch& scratch) {
+  static HWY_NOINLINE void remove(Block& block, Ops ops, Scratch& scratch) {
     for (std::size_t index = 0; index < ops.size(); ++index) {
       if (ops[index].kind() != OpKind::kErase) continue;
       block.remove(scratch.place(index));
@@ -215,11 +226,7 @@ struct Kernels {
     if constexpr (kAlone) {
       new_boxes.store(block, first);
     }
-    // Apart from the loop above, so that no call comes between its vectors and their registers.
-    for (std::size_t index = 0; index < ops.size(); ++index) {
-      const Lanes changed = scratch.hits(index) & 0xffff;
-      if (changed != 0) report(ops[index].object(), block.ids() + first, changed, scratch.hits(index) >> 16, deltas);
-    }
+    report(scratch, ops, block.ids() + first, deltas);
   }
 
   static std::size_t drain(Block& block, Ops ops, std::vector<OverlapDelta>& deltas, SapCounters& counters) {
@@ -258,21 +265,22 @@ struct Kernels {
   }
 
   static void visit(const Block& block, Visits visits, std::vector<OverlapDelta>& deltas, SapCounters& counters) {
+    Scratch scratch(visits.size());
     const std::size_t deltas_before = deltas.size();
+    for (std::uint32_t first = 0; first < block.size(); first += kLanes) {
+      const Box boxes = Box::load(block, first);
+      const Lanes has_box = lanes_below(first, block.size());
+      for (std::size_t index = 0; index < visits.size(); ++index) {
+        const auto visit = visits[index];
+        const Lanes was = boxes.overlaps(Box::everywhere(visit.before())) & (visit.was() ? has_box : 0);
+        const Lanes is = boxes.overlaps(Box::everywhere(visit.after())) & (visit.is() ? has_box : 0);
+        scratch.hits(index) = (was ^ is) | is << 16;
+      }
+      report(scratch, visits, block.ids() + first, deltas);
+    }
     std::uint64_t boxes_compared = 0;
     for (std::size_t index = 0; index < visits.size(); ++index) {
-      const auto visit = visits[index];
-      const Lanes if_was = visit.was() ? ~Lanes{0} : 0;
-      const Lanes if_is = visit.is() ? ~Lanes{0} : 0;
-      const Box before = Box::everywhere(visit.before());
-      const Box after = Box::everywhere(visit.after());
-      boxes_compared += (if_was & 1) + (if_is & 1);
-      for (std::uint32_t first = 0; first < block.size(); first += kLanes) {
-        const Box boxes = Box::load(block, first);
-        const Lanes was = boxes.overlaps(before) & if_was;
-        const Lanes is = boxes.overlaps(after) & if_is;
-        report(visit.object(), block.ids() + first, (was ^ is) & lanes_below(first, block.size()), is, deltas);
-      }
+      boxes_compared += (visits[index].was() ? 1 : 0) + (visits[index].is() ? 1 : 0);
     }
     counters.deltas += deltas.size() - deltas_before;
     counters.box_tests += boxes_compared * block.size();
