@@ -27,7 +27,7 @@ struct Config {
   /// when the scene changes. With witness counts, doubled while the grid would have more than 2^24 cells.
   std::optional<double> cell_size;
   /// Objects per cell that a derived cell size aims at (centres of boxes beside the object's own), at least 1; absent:
-  /// what is fastest for the kind of cells.
+  /// what costs least by a model of the kind of cells.
   std::optional<int> cell_population;
   /// How deltas become events.
   Reduction reduction = Reduction::kSingleReporter;

@@ -134,7 +134,6 @@ class EngineCore {
   [[nodiscard]] typename GridFit<Scalar, Dim>::Result fit(const std::vector<BoxType>& sample) const;
   [[nodiscard]] std::vector<BoxType> sample(std::size_t count) const;
   [[nodiscard]] std::size_t grid_shards() const;
-  [[nodiscard]] int population() const;
   void plan_relocation();
 
   [[nodiscard]] std::size_t shard_of(PairKey pair) const { return WitnessTable::hash(pair) >> shard_shift_; }

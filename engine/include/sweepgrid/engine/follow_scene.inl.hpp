@@ -41,28 +41,26 @@ auto EngineCore<Scalar, Dim>::sample(std::size_t count) const -> std::vector<Box
 template <class Scalar, int Dim>
 auto EngineCore<Scalar, Dim>::fit(const std::vector<BoxType>& boxes) const -> typename GridFit<Scalar, Dim>::Result {
   GridFit<Scalar, Dim> fit;
-  fit.population = population();
   fit.cell_size = config_.cell_size;
+  if (config_.cell_population) {
+    fit.population = *config_.cell_population;
+  } else if (config_.cell.kind != CellKind::kRows) {
+    fit.population = 48;  // measured for batch cells, see grid/README.md
+  }
   return fit.derive(boxes, objects_.size());
-}
-
-template <class Scalar, int Dim>
-int EngineCore<Scalar, Dim>::population() const {
-  if (config_.cell_population) return *config_.cell_population;
-  return config_.cell.kind == CellKind::kRows ? 6 : 48;  // measured, see grid/README.md
 }
 
 // All objects move to a new grid in this step, and events come from the difference of the two tables.
 template <class Scalar, int Dim>
 void EngineCore<Scalar, Dim>::follow_with_counts() {
   if (gridded_ && !regrid_.outgrown(objects_.size()) && !regrid_.crowded()) return;
-  const auto result = fit(sample(GridFit<Scalar, Dim>::kSample));
+  const auto result = fit(sample(GridFit<Scalar, Dim>::sample_size(objects_.size())));
   if (gridded_ && !regrid_.outgrown(objects_.size()) && result.cell_size > 0.75 * levels_.cell_size()) {
     return regrid_.resign();
   }
   levels_.start_single(GridFit<Scalar, Dim>::bounded(result, kMaxCells), config_.cell, grid_shards());
   for (ObjectId object = 0; object < objects_.bound(); ++object) objects_.record(object).grid = levels_.finest();
-  regrid_.fitted(population(), objects_.size());
+  regrid_.fitted(result.met, objects_.size());
   gridded_ = true;
   regridding_ = true;
   counters_.regrids = 1;
@@ -73,21 +71,22 @@ template <class Scalar, int Dim>
 void EngineCore<Scalar, Dim>::follow_with_levels() {
   const std::size_t objects = objects_.size();
   if (!gridded_) {
-    const auto boxes = sample(GridFit<Scalar, Dim>::kSample);
+    const auto boxes = sample(GridFit<Scalar, Dim>::sample_size(objects));
     const auto result = fit(boxes);
     start_family(result.cell_size, result.lower, boxes);
+    regrid_.fitted(result.met, objects);
     gridded_ = true;
   } else if (!config_.cell_size && !relocation_.wanted) {
     if (regrid_.outgrown(objects)) {
       const std::size_t news = objects > objects_at_step_ ? objects - objects_at_step_ : 0;
-      const auto boxes = sample(std::clamp<std::size_t>(news / 2, 256, GridFit<Scalar, Dim>::kSample));
+      const auto boxes =
+          sample(std::min(std::max<std::size_t>(news / 2, 256), GridFit<Scalar, Dim>::sample_size(objects)));
       const auto result = fit(boxes);
       const double change = result.cell_size / levels_.cell_size();
+      regrid_.fitted(result.met, objects);
       if (change > 1.3 || change < 0.75) {
         start_family(result.cell_size, result.lower, boxes);
         relocation_.wanted = true;
-      } else {
-        regrid_.fitted(population(), objects);
       }
     } else if (regrid_.crowded() || regrid_.sparse()) {
       const auto boxes = sample(256);
@@ -96,6 +95,7 @@ void EngineCore<Scalar, Dim>::follow_with_levels() {
       const double change = size / levels_.cell_size();
       if (change > 1.25 || change < 0.8) {
         start_family(size, levels_.origin(), boxes);
+        regrid_.refitted();
         relocation_.wanted = true;
       } else {
         regrid_.resign();
@@ -114,7 +114,6 @@ void EngineCore<Scalar, Dim>::start_family(double cell_size, const std::array<do
   levels_.make_room(objects_.widest());
   for (const BoxType& box : boxes) static_cast<void>(levels_.home(LevelsType::width(box)));  // asks for its level
   levels_.make_room(objects_.widest());
-  regrid_.fitted(population(), objects_.size());
   relocation_ = {};
   counters_.regrids = 1;
 }

@@ -11,13 +11,15 @@ namespace sweepgrid {
 /// number of objects.
 class Regrid {
  public:
-  /// `population`: centres that the cell of an object should hold beside its own.
-  void fitted(double population, std::size_t objects) {
-    // With the copies of boxes that cover several cells, an op meets nearly twice as many.
-    target_ = 2 * population;
+  /// `met`: residents that an op is expected to meet in its cell.
+  void fitted(double met, std::size_t objects) {
+    target_ = std::max(met, 8.0);
     objects_ = std::max<std::size_t>(objects, 32);
     usual_ = 0;
   }
+
+  /// To the same target.
+  void refitted() { usual_ = 0; }
 
   /// Tells what the ops of a step met. Few ops say little.
   void observe(double met, std::uint64_t ops) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <optional>
@@ -10,24 +11,32 @@
 
 namespace sweepgrid {
 
-/// Derives a grid from a sample of boxes: where it lies, and the cell size at which an object has about `population`
-/// others in its cell.
+/// Derives a grid from a sample of boxes: where it lies, and the size of its cells.
+///
+/// Small cells hold few objects to compare with, but then a box lies in more of them. Either the client says how many
+/// objects a cell should hold, or the cost of an op is minimised: the number of cells that it goes to, times what a
+/// cell costs by itself and for each of its residents.
 template <class Scalar, int Dim>
 struct GridFit {
-  /// Centres of other objects that the cell of an object should hold.
-  double population = 6;
   /// Given by the client, else derived.
   std::optional<double> cell_size;
+  /// Centres of other objects that the cell of an object should hold; absent: what costs least.
+  std::optional<double> population;
+  /// What an op costs in a cell without residents, in units of what each resident adds.
+  double cell_overhead = 90;
 
   /// What comes of it. Nearly all centres lie between the corners.
   struct Result {
     double cell_size = 1;
+    double met = 1;  // residents that an op is expected to meet in a cell
     std::array<double, Dim> lower{};
     std::array<double, Dim> upper{};
   };
 
-  /// Boxes that suffice as a sample; more only cost time.
-  static constexpr std::size_t kSample = 1 << 14;
+  /// Boxes that suffice as a sample of so many objects; more only cost time.
+  [[nodiscard]] static std::size_t sample_size(std::size_t objects) {
+    return std::clamp<std::size_t>(objects / 16, 512, 4096);
+  }
 
   /// `sample` are boxes of evenly chosen objects, `objects` how many there are in all. O(sample log sample).
   [[nodiscard]] Result derive(const std::vector<Box<Scalar, Dim>>& sample, std::size_t objects) const;

@@ -101,19 +101,66 @@ double companions(const Points<Dim>& points, const std::array<double, Dim>& lowe
   return pairs / sample * (static_cast<double>(objects) / sample);
 }
 
+// Cells that the average box is in, of this size. Boxes that are wider live in coarser grids.
+template <class Scalar, int Dim>
+double copies(const std::vector<Box<Scalar, Dim>>& sample, double size) {
+  double total = 0;
+  for (const auto& box : sample) {
+    double cells = 1;
+    for (int axis = 0; axis < Dim; ++axis) {
+      const double edge = static_cast<double>(box.max[axis]) - static_cast<double>(box.min[axis]);
+      cells *= 1 + std::min(1.0, edge / size);
+    }
+    total += cells;
+  }
+  return total / static_cast<double>(sample.size());
+}
+
+/// A sample of a scene, and what cells of some size would hold.
+template <class Scalar, int Dim>
+struct Census {
+  const std::vector<Box<Scalar, Dim>>& sample;
+  const Points<Dim>& points;
+  const Extent<Dim>& extent;
+  std::size_t objects;
+  std::vector<std::uint64_t> scratch;
+
+  [[nodiscard]] double companions(double size) {
+    return grid_fit::companions<Dim>(points, extent.lower, size, objects, scratch);
+  }
+  [[nodiscard]] double met(double size) { return companions(size) * copies(sample, size); }
+  [[nodiscard]] double cost(double size, double overhead) { return copies(sample, size) * (overhead + met(size)); }
+};
+
 // The largest size at which an object has at most `population` companions, or nearly twice the width of most boxes.
 template <class Scalar, int Dim>
-double fitting_size(const std::vector<Box<Scalar, Dim>>& sample, const Points<Dim>& points, const Extent<Dim>& extent,
-                    std::size_t objects, double population) {
-  double large = extent.longest();
-  double small = std::clamp(smallest_cell(sample), large / 65536, large);
-  std::vector<std::uint64_t> cells;
-  // Bisection over the exponent: 12 halvings of at most 16 octaves leave the size within 1 %.
-  for (int i = 0; i < 12 && large > 1.01 * small; ++i) {
+double size_for_population(Census<Scalar, Dim>& census, double population) {
+  double large = census.extent.longest();
+  double small = std::clamp(smallest_cell(census.sample), large / 65536, large);
+  // Bisection over the exponent: 9 halvings of at most 16 octaves leave the size within 3 %.
+  for (int i = 0; i < 9 && large > 1.03 * small; ++i) {
     const double size = std::sqrt(small) * std::sqrt(large);  // the product could underflow or overflow
-    (companions<Dim>(points, extent.lower, size, objects, cells) > population ? large : small) = size;
+    (census.companions(size) > population ? large : small) = size;
   }
   return small;
+}
+
+// From a size that is about right, downhill.
+template <class Scalar, int Dim>
+double cheapest_size(Census<Scalar, Dim>& census, double overhead) {
+  double best = size_for_population(census, 12);
+  double least = census.cost(best, overhead);
+  const double largest = census.extent.longest();
+  for (const double factor : {1.25, 0.8}) {
+    const double start = best;
+    for (double size = best * factor; size <= largest; size *= factor) {
+      const double cost = census.cost(size, overhead);
+      if (!(cost < least)) break;
+      best = size, least = cost;
+    }
+    if (best != start) break;
+  }
+  return best;
 }
 
 }  // namespace grid_fit
@@ -122,6 +169,7 @@ template <class Scalar, int Dim>
 auto GridFit<Scalar, Dim>::derive(const std::vector<Box<Scalar, Dim>>& sample, std::size_t objects) const -> Result {
   const auto points = grid_fit::centres(sample);
   const auto extent = grid_fit::extent_of<Dim>(points, 0.005);
+  grid_fit::Census<Scalar, Dim> census{sample, points, extent, objects, {}};
   Result result;
   result.lower = extent.lower;
   result.upper = extent.upper;
@@ -131,11 +179,13 @@ auto GridFit<Scalar, Dim>::derive(const std::vector<Box<Scalar, Dim>>& sample, s
   if (cell_size) {
     result.cell_size = *cell_size;
   } else if (sound) {
-    result.cell_size = grid_fit::fitting_size<Scalar, Dim>(sample, points, extent, objects, population);
+    result.cell_size = population ? grid_fit::size_for_population(census, *population)
+                                  : grid_fit::cheapest_size(census, cell_overhead);
   } else if (const double width = grid_fit::smallest_cell(sample); width >= kSmallestExtent) {
     result.cell_size = width;
   }
   if (!sound) result.upper = result.lower;
+  if (sound && !cell_size) result.met = std::max(1.0, census.met(result.cell_size));
   return result;
 }
 
