@@ -23,6 +23,16 @@ struct BoxOp {
   Box<Scalar, Dim> box{};
 };
 
+/// A visit with its boxes in world units.
+template <class Scalar, int Dim>
+struct BoxVisit {
+  ObjectId object = kNoObject;
+  bool was = false;
+  bool is = false;
+  Box<Scalar, Dim> before{};
+  Box<Scalar, Dim> after{};
+};
+
 template <class Scalar, int Dim>
 using Drain = std::vector<BoxOp<Scalar, Dim>>;
 
@@ -71,6 +81,58 @@ class CellOracle {
     } catch (const std::exception& error) {
       return std::string("exception: ") + error.what();
     }
+  }
+
+  /// Transfers `ops` and says what is wrong with the outcome. Compared: residents and boxes; validate(); the delta
+  /// counter, which must stay as it is.
+  std::string transfer(Cell& cell, std::span<const Op> ops) {
+    std::vector<CellOp<Scalar, Dim>> cell_ops;
+    for (const Op& op : ops) cell_ops.push_back({op.object, op.kind, OrderedBox<Scalar, Dim>(op.box)});
+    apply(ops);
+    const std::uint64_t counted = counters_.deltas;
+    try {
+      cell.transfer(cell_ops, counters_);
+      if (counters_.deltas != counted) return "transfer() counts deltas";
+      std::string wrong = compare_residents(cell);
+      if (wrong.empty()) cell.validate();
+      return wrong;
+    } catch (const std::exception& error) {
+      return std::string("exception: ") + error.what();
+    }
+  }
+
+  /// Visits `cell` and says what is wrong with the outcome. Compared: that each changed pair has one delta, and no
+  /// other has any; both counters.
+  std::string visit(const Cell& cell, std::span<const BoxVisit<Scalar, Dim>> visits) {
+    std::vector<typename Cell::Visit> cell_visits;
+    std::map<PairKey, int> expected;
+    std::uint64_t box_tests = 0;
+    for (const auto& visit : visits) {
+      cell_visits.push_back({visit.object, visit.was, visit.is, OrderedBox<Scalar, Dim>(visit.before),
+                             OrderedBox<Scalar, Dim>(visit.after)});
+      box_tests += boxes_.size() * ((visit.was ? 1 : 0) + (visit.is ? 1 : 0));
+      for (const auto& [object, box] : boxes_) {
+        const bool was = visit.was && visit.before.overlaps(box);
+        const bool is = visit.is && visit.after.overlaps(box);
+        if (was != is) expected[PairKey(object, visit.object)] = is ? +1 : -1;
+      }
+    }
+    std::vector<OverlapDelta> deltas(1);
+    SapCounters counters;
+    cell.visit(cell_visits, deltas, counters);
+    if (counters.box_tests != box_tests) return "visit() miscounts the pairs that it compares";
+    if (counters.deltas != expected.size()) return "visit() counts a wrong number of deltas";
+    if (deltas.size() != expected.size() + 1) return "visit() gives a wrong number of deltas";
+    for (std::size_t index = 1; index < deltas.size(); ++index) {
+      const auto [pair, change] = deltas[index];
+      const auto found = expected.find(pair);
+      if (found == expected.end() || found->second != change) {
+        return "visit() is wrong about pair (" + std::to_string(pair.lower()) + ", " + std::to_string(pair.upper()) +
+               ")";
+      }
+      expected.erase(found);
+    }
+    return {};
   }
 
   [[nodiscard]] const std::map<ObjectId, Box<Scalar, Dim>>& boxes() const { return boxes_; }
