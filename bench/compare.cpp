@@ -45,8 +45,8 @@ std::vector<std::string> default_systems() {
 }
 
 std::string systems_help() {
-  std::string text = "Systems:\n  " + engine_setting_names() + ": the engine, as it comes or with that kind of cell, " +
-                     "on one thread; engine2, batch4, ...: on 2, 4, ... threads\n";
+  std::string text = "Systems:\n  " + engine_setting_help() + ": the engine, as it comes or with other cells, " +
+                     "another reduction, more threads than one\n";
   for (const Contestant& peer : peers()) text += fmt::format("  {}: {}\n", peer.name, peer.about);
   return text;
 }

@@ -7,7 +7,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char* kRow = "  {:<12} {:>9} {:>9} {:>21} {:>8} {:>8} {:>15} {:>15} {:>8} {:>9} {:>9} {:>9}\n";
+constexpr const char* kRow = "  {:<18} {:>9} {:>9} {:>21} {:>8} {:>8} {:>15} {:>15} {:>8} {:>9} {:>9} {:>9}\n";
 
 // "12.3 (4.5x)": milliseconds, and how many times faster than the first contestant.
 std::string milliseconds(const Rounds& rounds, std::size_t i, double Run::*figure) {

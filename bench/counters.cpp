@@ -24,7 +24,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::uint64_t kObjects = 4000;
 constexpr std::uint64_t kSteps = 10;
-constexpr const char* kSettings[] = {"engine", "batch", "segmented"};
+constexpr const char* kSettings[] = {"engine", "rows", "batch", "segmented-counts"};
 constexpr double kExact = 0;
 // Bytes are those of containers, and how they grow is the standard library's affair.
 constexpr double kBytesTolerance = 0.05;

@@ -136,7 +136,7 @@ int run(int argc, char** argv) {
   app.add_option("--rounds", rounds, "Times that all is measured in turn")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  app.add_option("--system", setting, "The engine's setting, one of " + engine_setting_names())->capture_default_str();
+  app.add_option("--system", setting, "The engine's setting: " + engine_setting_help())->capture_default_str();
   app.add_option("--json", json_file, "Also write the figures here");
   CLI11_PARSE(app, argc, argv);
   const auto config = engine_setting(setting);
