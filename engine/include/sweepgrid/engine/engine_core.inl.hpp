@@ -98,7 +98,8 @@ void EngineCore<Scalar, Dim>::plan_route(std::vector<std::uint64_t>& costs) {
   for (std::uint32_t granule = 0; granule < granules; ++granule) {
     if (regridding_ || relocating(granule) || objects_.granule_marked(granule)) marked.push_back(granule);
   }
-  const bool dense = config_.cell.kind == CellKind::kRows && !regridding_ && most_changed(marked);
+  const bool rows = config_.cell.kind == CellKind::kRows || config_.cell.kind == CellKind::kAuto;
+  const bool dense = rows && !regridding_ && most_changed(marked);
   const auto workers = static_cast<std::size_t>(executor_->concurrency());
   const bool small = workers == 1 || marked.size() < 8;
   const std::size_t wanted = small ? 1 : std::min(marked.size(), engine_core::kTasksPerWorker * workers);

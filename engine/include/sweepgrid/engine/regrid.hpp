@@ -1,7 +1,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 
@@ -39,9 +38,18 @@ class Regrid {
     return objects > 2 * objects_ || 4 * objects + 64 < objects_;
   }
 
-  /// By how much cells should be wider or narrower.
+  /// By how much cells should be wider or narrower, in steps of a twelfth of an octave and at most two octaves.
   [[nodiscard]] double factor(int dim) const {
-    return std::clamp(std::pow(target_ / std::max(met_, 0.1), 1.0 / dim), 0.25, 4.0);
+    constexpr double kStep = 1.0594630943592953;  // 2^(1/12); no call to pow, whose last bit differs between machines
+    const double wanted = target_ / std::max(met_, 0.1);
+    const double step = wanted > 1 ? kStep : 1 / kStep;
+    double factor = 1;
+    double reached = 1;  // factor to the power of dim
+    for (int i = 0; i < 24 && (wanted > 1 ? reached < wanted : reached > wanted); ++i) {
+      factor *= step;
+      for (int axis = 0; axis < dim; ++axis) reached *= step;
+    }
+    return factor;
   }
 
  private:

@@ -28,6 +28,8 @@ struct DrainOutput {
 
   std::vector<CellOp<Scalar, Dim>> ops;
   std::vector<CellOp<Scalar, Dim>> transfers;
+  std::vector<typename SweepAndPrune<Scalar, Dim>::Resident> residents;
+  std::vector<ObjectId> resident_ids;
   std::vector<typename SweepAndPrune<Scalar, Dim>::Visit> visits;
   std::vector<typename SweepAndPrune<Scalar, Dim>::Visit> late_visits;
 

@@ -212,7 +212,7 @@ template <class Scalar, int Dim>
 template <class Boxes>
 void Grid<Scalar, Dim>::drain(std::size_t index, std::span<const ActiveCell> cells, const Boxes& boxes, Output& out) {
   Shard& shard = shards_[index];
-  constexpr std::size_t kAhead = 4;
+  constexpr std::size_t kAhead = 8;
   const auto announce = [&](const ActiveCell& active) {
     for (std::uint32_t i = 0; i < active.call_count; ++i) boxes.prefetch(shard.calls[active.first_call + i].object);
     sweepgrid::prefetch(&shard.cells[active.cell], sizeof(CellType));
@@ -225,7 +225,7 @@ void Grid<Scalar, Dim>::drain(std::size_t index, std::span<const ActiveCell> cel
   for (std::size_t i = 0; i < std::min(kAhead, cells.size()); ++i) announce(cells[i]);
   for (std::size_t i = 0; i < cells.size(); ++i) {
     if (i + kAhead < cells.size()) announce(cells[i + kAhead]);
-    if (i + 2 < cells.size()) shard.cells[cells[i + 2].cell].prefetch();
+    if (i + 3 < cells.size()) shard.cells[cells[i + 3].cell].prefetch();
     if (dense_ && i + 1 < cells.size()) announce_residents(cells[i + 1]);
     drain_cell(shard, cells[i], boxes, out);
   }
@@ -236,12 +236,15 @@ template <class Boxes>
 void Grid<Scalar, Dim>::drain_cell(Shard& shard, const ActiveCell& active, const Boxes& boxes, Output& out) {
   CellType& cell = shard.cells[active.cell];
   const std::size_t before = out.deltas.size();
+  const bool judged = options_.kind == CellKind::kAuto && cell.size() >= KindChoice::kManyObjects / 2;
+  const SapCounters counters_before = judged ? out.counters : SapCounters{};
   const auto calls = std::span<const Call>(shard.calls).subspan(active.first_call, active.call_count);
   if (sort_out(cell, calls, boxes, out)) {
     cell.drain(out.ops, out.deltas, out.counters);
   } else {
     drain_visited(cell, out);
   }
+  if (judged) cell.choose_kind(out.ops.size(), out.counters - counters_before, options_, out.counters);
   if (out.deltas.size() > before) out.runs.push_back({out.deltas.size(), cell.code()});
   if (cell.size() == 0) out.emptied.push_back(active.cell);
 }
@@ -270,7 +273,15 @@ bool Grid<Scalar, Dim>::sort_out(const CellType& cell, std::span<const Call> cal
       }
       return false;
     };
-    for (const ObjectId object : cell.row_ids()) {
+    std::span<const ObjectId> residents = cell.row_ids();
+    if (!cell.has_rows()) {
+      out.residents.clear();
+      cell.kind().append_residents(out.residents);
+      out.resident_ids.clear();
+      for (const auto& resident : out.residents) out.resident_ids.push_back(resident.object);
+      residents = out.resident_ids;
+    }
+    for (const ObjectId object : residents) {
       if (!boxes.changed(object) || (called != 0 && is_called(object))) continue;
       out.ops.push_back({object, OpKind::kUpdate, Ordered(boxes.after(object))});
     }
