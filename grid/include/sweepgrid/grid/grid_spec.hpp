@@ -32,8 +32,10 @@ class GridSpec {
     constexpr double kMax = std::numeric_limits<Real>::max();
     scale_ = static_cast<Real>(std::min(1 / cell_size, kMax));
     for (int i = 0; i < 2 * Dim; ++i) {
-      origin_[i] = static_cast<Real>(std::clamp(origin[i % Dim], -kMax, kMax));
       limit_[i] = static_cast<Real>(limit[i % Dim]);
+      // A difference that overflows takes a value to the last coordinate, which must be near that of its neighbours.
+      const double least = kMax / cell_size < static_cast<double>(limit_[i]) ? 0 : -kMax;
+      origin_[i] = static_cast<Real>(std::clamp(origin[i % Dim], least, kMax));
     }
   }
 
