@@ -148,12 +148,14 @@ double size_for_population(Census<Scalar, Dim>& census, double population) {
 // From a size that is about right, downhill.
 template <class Scalar, int Dim>
 double cheapest_size(Census<Scalar, Dim>& census, double overhead) {
-  double best = size_for_population(census, 12);
+  // Cells not much wider than boxes send them to coarser grids, which the model does not know.
+  const double smallest = 0.65 * smallest_cell(census.sample);
+  double best = std::max(smallest, size_for_population(census, 12));
   double least = census.cost(best, overhead);
   const double largest = census.extent.longest();
   for (const double factor : {1.25, 0.8}) {
     const double start = best;
-    for (double size = best * factor; size <= largest; size *= factor) {
+    for (double size = best * factor; size >= smallest && size <= largest; size *= factor) {
       const double cost = census.cost(size, overhead);
       if (!(cost < least)) break;
       best = size, least = cost;

@@ -13,8 +13,9 @@ namespace sweepgrid {
 /// fastest. Costs are measured in exact counts, weighted by what each takes (sap/README.md), not by a clock, so that a
 /// scene is treated alike on every run.
 ///
-/// A cell that has become costly tries the other kind for as many drains as it has just judged, and keeps what is
-/// clearly cheaper. Each trial that fails doubles the time to the next.
+/// A cell of many objects tries a batch sweep and prune for as many drains as it has just judged, and keeps it when it
+/// is clearly cheaper than rows. Each trial that fails doubles the time to the next. Segmented lists are no candidate:
+/// in cells of a grid they were nowhere faster than batches (bench/README.md).
 class KindChoice {
  public:
   /// Cells of fewer objects than this have rows. Going back takes a quarter less, so that no cell wavers.
@@ -29,13 +30,11 @@ class KindChoice {
     }
     cost_ += cost(kind, ops, work);
     ops_ += ops;
-    share_ += static_cast<double>(ops) / static_cast<double>(population);
     if (++drains_ < kWindow) return kind;
     const double per_op = cost_ / static_cast<double>(std::max<std::uint64_t>(1, ops_));
-    const bool few_move = share_ / kWindow < kFewMove;
-    cost_ = 0, ops_ = 0, share_ = 0, drains_ = 0;
-    if (kind == CellKind::kRows) return judge_rows(per_op, population, few_move);
-    return judge_trial(kind, per_op);
+    cost_ = 0, ops_ = 0, drains_ = 0;
+    if (kind == CellKind::kRows) return judge_rows(per_op, population);
+    return judge_trial(per_op);
   }
 
  private:
@@ -47,20 +46,20 @@ class KindChoice {
   // In nanoseconds, about.
   static double cost(CellKind kind, std::size_t ops, const SapCounters& work) {
     const auto tests = static_cast<double>(work.box_tests);
-    if (kind == CellKind::kRows) return 15.0 * static_cast<double>(ops) + 0.4 * tests;
-    return 60.0 * static_cast<double>(ops) + 5.0 * static_cast<double>(work.swaps) + 3.0 * tests;
+    const double deltas = 12.0 * static_cast<double>(work.deltas);
+    if (kind == CellKind::kRows) return 15.0 * static_cast<double>(ops) + 0.18 * tests + deltas;
+    return 60.0 * static_cast<double>(ops) + static_cast<double>(work.swaps) + 2.0 * tests + deltas;
   }
 
-  CellKind judge_rows(double per_op, std::size_t population, bool few_move) {
+  CellKind judge_rows(double per_op, std::size_t population) {
     rows_cost_ = per_op;
-    if (population < kManyObjects || --wait_ > 0) return CellKind::kRows;
-    return few_move ? CellKind::kSegmented : CellKind::kBatch;
+    return population < kManyObjects || --wait_ > 0 ? CellKind::kRows : CellKind::kBatch;
   }
 
-  CellKind judge_trial(CellKind kind, double per_op) {
+  CellKind judge_trial(double per_op) {
     if (per_op < kClearly * rows_cost_) {
       next_wait_ = 1;
-      return kind;
+      return CellKind::kBatch;
     }
     wait_ = next_wait_;
     next_wait_ = std::min(2 * next_wait_, kLongestWait);
@@ -68,7 +67,6 @@ class KindChoice {
   }
 
   double cost_ = 0;  // of the running window
-  double share_ = 0;
   std::uint64_t ops_ = 0;
   int drains_ = 0;
   double rows_cost_ = 0;  // per op, when the cell last had rows

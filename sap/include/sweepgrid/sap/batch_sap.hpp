@@ -29,6 +29,8 @@ class BatchSap final : public SweepAndPrune<Scalar, Dim> {
   using typename Base::Resident;
 
   void drain(std::span<const Op> ops, std::vector<OverlapDelta>& deltas, SapCounters& counters) override;
+  /// Sorts the lists anew, O(n log n): no pair is looked at.
+  void transfer(std::span<const Op> ops, SapCounters& counters) override;
   void prefetch() const override;
   [[nodiscard]] std::size_t size() const override { return slots_.size(); }
   [[nodiscard]] std::size_t bytes() const override;

@@ -56,6 +56,33 @@ void BatchSap<Scalar, Dim>::drain(std::span<const Op> ops, std::vector<OverlapDe
   counters.deltas += deltas.size() - deltas_before;
 }
 
+template <class Scalar, int Dim>
+void BatchSap<Scalar, Dim>::transfer(std::span<const Op> ops, SapCounters& /*counters*/) {
+  DrainArena arena;
+  const Ops resolved(ops, slots_, arena.resource());
+  batch_sap::grow(ranks_, slots_.slot_bound());
+  for (const auto& entry : resolved.erases) ranks_[entry.slot] = kEmptyRanks;
+  for (int axis = 0; axis < Dim; ++axis) {
+    FloatingList& list = lists_[axis];
+    std::vector<End> ends;
+    ends.reserve(2 * (size() - resolved.erases.size()));
+    for (std::uint32_t place = list.begin; place < list.end; ++place) {
+      const Ranks& ranks = ranks_[list.storage[place].owner()];
+      if (ranks.min[0] <= ranks.max[0]) ends.push_back(list.storage[place]);
+    }
+    for (const auto& [slot, op] : resolved.inserts) {
+      ends.push_back(End::min_of(slot, op->box.min[axis]));
+      ends.push_back(End::max_of(slot, op->box.max[axis]));
+    }
+    std::sort(ends.begin(), ends.end());
+    list.storage = std::move(ends);
+    list.begin = 0;
+    list.end = static_cast<std::uint32_t>(list.storage.size());
+  }
+  for (int axis = 0; axis < Dim; ++axis) read_ranks(axis);
+  for (const auto& entry : resolved.erases) slots_.release(entry.op->object);
+}
+
 // Trailing endpoint first: a box that moves by more than its width is inverted in flight and so overlaps nothing that
 // it jumps over, which saves a +1 and a -1 for each.
 template <class Scalar, int Dim>
