@@ -72,6 +72,7 @@ class EngineCore {
     std::uint32_t first_granule = 0;
     std::uint32_t last_granule = 0;
     StepCounters counters;
+    std::uint64_t calls = 0;
     std::vector<ObjectId> retired;
     std::vector<std::pair<ObjectId, GridIndex>> relocated;  // at the end of the step
   };
@@ -162,6 +163,7 @@ class EngineCore {
   } relocation_;
 
   bool gridded_ = false;
+  bool dense_ = false;  // this step: most objects have changed
   std::size_t objects_at_step_ = 0;  // how many there were when the latest step began
   std::uint64_t last_changed_ = 0;   // ops of the latest step that had any
   std::uint64_t pairs_ = 0;          // by the events

@@ -21,6 +21,8 @@ namespace engine_core {
 
 /// Tasks of a stage for each worker, so that the slowest does not keep the others waiting.
 inline constexpr std::size_t kTasksPerWorker = 16;
+/// Blocks of objects for each worker: fewer, because each has a queue to every shard of a grid.
+inline constexpr std::size_t kBlocksPerWorker = 3;
 /// Estimated cost, in about nanoseconds, below which a task is not worth its own start.
 inline constexpr std::uint64_t kSmallestTask = 8192;
 
@@ -99,10 +101,10 @@ void EngineCore<Scalar, Dim>::plan_route(std::vector<std::uint64_t>& costs) {
     if (regridding_ || relocating(granule) || objects_.granule_marked(granule)) marked.push_back(granule);
   }
   const bool rows = config_.cell.kind == CellKind::kRows || config_.cell.kind == CellKind::kAuto;
-  const bool dense = rows && !regridding_ && most_changed(marked);
+  dense_ = rows && !regridding_ && most_changed(marked);
   const auto workers = static_cast<std::size_t>(executor_->concurrency());
   const bool small = workers == 1 || marked.size() < 8;
-  const std::size_t wanted = small ? 1 : std::min(marked.size(), engine_core::kTasksPerWorker * workers);
+  const std::size_t wanted = small ? 1 : std::min(marked.size(), engine_core::kBlocksPerWorker * workers);
   blocks_.resize(wanted);
   for (std::size_t b = 0; b < wanted; ++b) {
     RouteBlock& block = blocks_[b];
@@ -115,7 +117,7 @@ void EngineCore<Scalar, Dim>::plan_route(std::vector<std::uint64_t>& costs) {
     block.relocated.clear();
     costs.push_back(end - first);
   }
-  for (const GridIndex grid : levels_.live()) levels_.grid(grid).begin_step(wanted, dense);
+  for (const GridIndex grid : levels_.live()) levels_.grid(grid).begin_step(wanted, dense_);
 }
 
 // Judged by every 16th of the granules.
@@ -137,11 +139,14 @@ bool EngineCore<Scalar, Dim>::most_changed(const std::vector<std::uint32_t>& gra
 
 template <class Scalar, int Dim>
 void EngineCore<Scalar, Dim>::route(std::size_t block) {
-  const RouteBlock& out = blocks_[block];
+  RouteBlock& out = blocks_[block];
+  for (const GridIndex grid : levels_.live()) levels_.grid(grid).begin_block(block);
   for (std::uint32_t granule = out.first_granule; granule <= out.last_granule; ++granule) {
     if (!regridding_ && !relocating(granule) && !objects_.granule_marked(granule)) continue;
     route_granule(block, granule);
   }
+  out.calls = 0;
+  for (const GridIndex grid : levels_.live()) out.calls += levels_.grid(grid).calls(block);
 }
 
 // First the objects, then what is to be done with them: so their records can be on their way to the cache meanwhile.
@@ -253,25 +258,23 @@ void EngineCore<Scalar, Dim>::relocate(std::size_t block, ObjectId object, const
 template <class Scalar, int Dim>
 void EngineCore<Scalar, Dim>::plan_gather(std::vector<std::uint64_t>& costs) {
   std::size_t used = 0;
-  std::uint64_t total = 0;
   for (const GridIndex grid : levels_.live()) {
     for (std::size_t shard = 0; shard < levels_.grid(grid).shards(); ++shard) {
-      const std::size_t queued = levels_.grid(grid).queued(shard);
-      if (queued == 0) continue;
       if (used == gathers_.size()) gathers_.emplace_back();
       gathers_[used].grid = grid;
       gathers_[used].shard = shard;
       ++used;
-      costs.push_back(queued);
-      total += queued;
     }
   }
   gathers_.resize(used);
-  counters_.cell_ops = total;
+  costs.assign(used, 1);
+  std::uint64_t calls = 0;
+  for (const RouteBlock& block : blocks_) calls += block.calls;
+  counters_.cell_ops = calls;
   const auto workers = static_cast<std::uint64_t>(executor_->concurrency());
-  task_cost_ = workers == 1
-                   ? ~std::uint64_t{0}
-                   : std::max(engine_core::kSmallestTask, 16 * total / (engine_core::kTasksPerWorker * workers));
+  const std::uint64_t work = 16 * std::max<std::uint64_t>(calls, dense_ ? 2 * objects_.size() : 0);
+  task_cost_ = workers == 1 ? ~std::uint64_t{0}
+                            : std::max(engine_core::kSmallestTask, work / (engine_core::kTasksPerWorker * workers));
 }
 
 template <class Scalar, int Dim>
@@ -287,14 +290,15 @@ void EngineCore<Scalar, Dim>::gather(std::size_t index) {
   const auto cells = grid.active(task.shard);
   for (std::size_t i = 0; i < cells.size(); ++i) {
     const auto& cell = cells[i];
-    const std::uint64_t own = std::uint64_t{cell.call_count} * (8 + cell.population / 8) + 8;
+    const std::uint64_t ops = cell.call_count + (dense_ ? cell.population : 0);
+    const std::uint64_t own = ops * (8 + cell.population / 8) + 8;
     if (cost > 0 && cost + own > task_cost_) {
       task.cuts.push_back(i);
       task.costs.push_back(std::exchange(cost, 0));
     }
     cost += own;
-    task.met += static_cast<double>(cell.call_count) * cell.population;
-    task.ops += cell.call_count;
+    task.met += static_cast<double>(ops) * cell.population;
+    task.ops += ops;
   }
   if (cost > 0) {
     task.cuts.push_back(cells.size());

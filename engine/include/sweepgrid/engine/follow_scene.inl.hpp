@@ -22,7 +22,7 @@ std::size_t EngineCore<Scalar, Dim>::grid_shards() const {
   const auto workers = static_cast<std::size_t>(executor_->concurrency());
   // Even for one worker, queues that fit into its cache gather faster.
   const std::size_t parts = objects_.size() >> 17;
-  return std::bit_ceil(std::clamp<std::size_t>(std::max(parts, workers == 1 ? 1 : 4 * workers), 1, 1024));
+  return std::bit_ceil(std::clamp<std::size_t>(std::max(parts, workers == 1 ? 1 : 2 * workers), 1, 1024));
 }
 
 template <class Scalar, int Dim>

@@ -67,9 +67,13 @@ class Grid {
 
   [[nodiscard]] const GridSpec<Scalar, Dim>& spec() const { return spec_; }
 
-  /// Empties the queues (G2) and sets in how many blocks ops arrive. `dense`: most objects have changed, so every cell
+  /// Sets in how many blocks ops arrive. `dense`: most objects have changed, so every cell
   /// asks for its residents' boxes by itself, and updates that stay within their cells need no call.
   void begin_step(std::size_t blocks, bool dense);
+  /// To be called before the first op of the block is routed.
+  void begin_block(std::size_t block) { ops_.begin_block(block), late_.begin_block(block); }
+  /// Calls that the block has queued.
+  [[nodiscard]] std::size_t calls(std::size_t block) const { return ops_.written(block) + late_.written(block); }
 
   void route_insert(std::size_t block, ObjectId object, const BoxType& box);
   /// Returns whether the cell range changed (a migration: erases, inserts and updates in the cells concerned).
@@ -89,11 +93,6 @@ class Grid {
   void gather(std::size_t shard);
   [[nodiscard]] std::span<const ActiveCell> active(std::size_t shard) const { return shards_[shard].active; }
   [[nodiscard]] std::size_t shards() const { return shards_.size(); }
-  /// Calls that gathering the shard has to deal with; in a dense step its cells count, too.
-  [[nodiscard]] std::size_t queued(std::size_t shard) const {
-    return ops_.size(shard) + late_.size(shard) + (dense_ ? shards_[shard].directory.size() : 0);
-  }
-
   /// Applies the calls of active cells [first, last) of the shard. `boxes` tells each object's box at the start and at
   /// the end of the step: before(id), after(id), prefetch(id).
   template <class Boxes>

@@ -50,24 +50,29 @@ class OpQueues {
     [[nodiscard]] std::size_t size() const { return known.size() + fresh.size(); }
   };
 
-  /// Empties the queues and gives them `blocks` writers and `shards` readers. Memory that the latest step did not use
-  /// is returned, but for a little slack.
+  /// Gives the queues `blocks` writers and `shards` readers. Each writer is to begin_block() before it writes.
   void reset(std::size_t blocks, std::size_t shards) {
-    for (List& list : lists_) clear(list.known), clear(list.fresh);
+    if (blocks == blocks_ && shards == shards_) return;
     lists_.resize(blocks * shards);
     blocks_ = blocks;
     shards_ = shards;
   }
 
-  [[nodiscard]] std::size_t blocks() const { return blocks_; }
-  [[nodiscard]] List& list(std::size_t block, std::size_t shard) { return lists_[block * shards_ + shard]; }
+  /// Empties the lists of a writer. Memory that the latest step did not use is returned, but for a little slack.
+  void begin_block(std::size_t block) {
+    for (std::size_t shard = 0; shard < shards_; ++shard)
+      clear(list(block, shard).known), clear(list(block, shard).fresh);
+  }
 
-  /// Calls queued to a shard.
-  [[nodiscard]] std::size_t size(std::size_t shard) const {
+  /// Calls that a writer has queued.
+  [[nodiscard]] std::size_t written(std::size_t block) const {
     std::size_t total = 0;
-    for (std::size_t block = 0; block < blocks_; ++block) total += lists_[block * shards_ + shard].size();
+    for (std::size_t shard = 0; shard < shards_; ++shard) total += lists_[block * shards_ + shard].size();
     return total;
   }
+
+  [[nodiscard]] std::size_t blocks() const { return blocks_; }
+  [[nodiscard]] List& list(std::size_t block, std::size_t shard) { return lists_[block * shards_ + shard]; }
 
   [[nodiscard]] std::size_t bytes() const {
     std::size_t total = lists_.capacity() * sizeof(List);
@@ -80,6 +85,7 @@ class OpQueues {
  private:
   template <class T>
   static void clear(std::vector<T>& list) {
+    if (list.capacity() == 0) return;
     const std::size_t wanted = list.size() + list.size() / 8;
     const bool wasteful = list.capacity() > 64 && wanted + wanted / 8 < list.capacity();
     if (wasteful) std::vector<T>().swap(list);
