@@ -203,18 +203,10 @@ TEST(ObjectTable, AnUpdateToTheSameBoxIsNotQueued) {
   EXPECT_EQ(table.state(0), Table::kLive | Table::kUpdated);
 }
 
-TEST(ObjectTable, EraseAndInsertCanBeTakenBack) {
+TEST(ObjectTable, AnInsertCanBeTakenBack) {
   Table table;
   table.insert(kHere);
   settle(table);
-  const Handle first = table.handle(0);
-  table.erase(0);
-  EXPECT_EQ(table.size(), 0u);
-  table.cancel_erase(0);
-  EXPECT_TRUE(table.good(first));
-  EXPECT_EQ(table.size(), 1u);
-  EXPECT_EQ(table.state(0), Table::kLive);
-
   const Handle second = table.insert(kThere);
   table.cancel_insert(second.index);
   EXPECT_FALSE(table.good(second));

@@ -15,6 +15,7 @@
 #include <sweepgrid/engine/event_order.hpp>
 #include <sweepgrid/engine/events.hpp>
 #include <sweepgrid/engine/handle.hpp>
+#include <sweepgrid/engine/item_partition.hpp>
 #include <sweepgrid/engine/key_order.hpp>
 #include <sweepgrid/engine/key_table.hpp>
 #include <sweepgrid/engine/stats.hpp>
@@ -104,6 +105,24 @@ class Engine {
   [[nodiscard]] Pair<Key> keys_of(PairKey pair) const {
     return Sorter::pair(keys_.key(pair.lower()), keys_.key(pair.upper()));
   }
+  // Bulk calls, in bulk.inl.hpp.
+  using Objects = typename Core::Objects;
+  using Share = typename Objects::Share;
+  using NewIds = typename Objects::NewIds;
+  using Keys = KeyTable<Key, Hash>;
+  using KeyEntries = ItemPartition<typename Keys::Entry>;
+
+  [[nodiscard]] ObjectPartition partition_of(std::span<const Handle> objects) const;
+  [[nodiscard]] static std::vector<Share> shares_of(const ObjectPartition& partition);
+  [[nodiscard]] static std::vector<Share> shares_of(std::size_t items);
+  template <class Body>
+  void for_shares(std::vector<Share>& shares, Body&& body);
+  [[nodiscard]] static std::optional<std::size_t> first_bad(const std::vector<Share>& shares);
+  std::vector<Handle> insert(std::span<const Key> keys, std::span<const BoxType> boxes, const NewIds& ids);
+  std::optional<std::size_t> insert_keys(const NewIds& ids, std::span<const std::uint32_t> hashes);
+  std::optional<std::size_t> insert_keys_by_shard(const NewIds& ids, std::span<const std::uint32_t> hashes);
+  void erase_keys(std::span<const Handle> objects);
+
   [[nodiscard]] ObjectId live(Handle object, const char* call) const;
   [[nodiscard]] ObjectId live(const Key& key, const char* call) const;
   template <class Name>

@@ -51,7 +51,7 @@ void SWEEPGRID_ENGINE::sort_shard(std::size_t list, std::size_t shard) {
   sorters_[list].sort_shard(shard);
 }
 
-// ---- queueing
+// ---- queueing one call; many are in bulk.inl.hpp
 
 SWEEPGRID_ENGINE_TEMPLATE
 Handle SWEEPGRID_ENGINE::insert(const Key& key, const BoxType& box) {
@@ -72,24 +72,6 @@ Handle SWEEPGRID_ENGINE::insert(const Key& key, const BoxType& box) {
 }
 
 SWEEPGRID_ENGINE_TEMPLATE
-std::vector<Handle> SWEEPGRID_ENGINE::insert(std::span<const Key> keys, std::span<const BoxType> boxes) {
-  require_same_size(keys.size(), boxes.size(), "insert");
-  for (std::size_t i = 0; i < keys.size(); ++i) require_valid(boxes[i], keys[i], "insert");
-  std::vector<Handle> handles;
-  handles.reserve(keys.size());
-  try {
-    for (std::size_t i = 0; i < keys.size(); ++i) handles.push_back(insert(keys[i], boxes[i]));
-  } catch (...) {
-    for (const Handle handle : handles) {
-      keys_.erase(handle.index);
-      core_.objects().cancel_insert(handle.index);
-    }
-    throw;
-  }
-  return handles;
-}
-
-SWEEPGRID_ENGINE_TEMPLATE
 void SWEEPGRID_ENGINE::update(Handle object, const BoxType& box) {
   const ObjectId id = live(object, "update");
   if (!box.valid()) require_valid(box, keys_.key(id), "update");
@@ -101,16 +83,6 @@ void SWEEPGRID_ENGINE::update(const Key& key, const BoxType& box) {
   const ObjectId id = live(key, "update");
   require_valid(box, key, "update");
   core_.objects().update(id, box);
-}
-
-SWEEPGRID_ENGINE_TEMPLATE
-void SWEEPGRID_ENGINE::update(std::span<const Handle> objects, std::span<const BoxType> boxes) {
-  require_same_size(objects.size(), boxes.size(), "update");
-  for (std::size_t i = 0; i < objects.size(); ++i) {
-    const ObjectId id = live(objects[i], "update");
-    if (!boxes[i].valid()) require_valid(boxes[i], keys_.key(id), "update");
-  }
-  for (std::size_t i = 0; i < objects.size(); ++i) core_.objects().update(objects[i].index, boxes[i]);
 }
 
 SWEEPGRID_ENGINE_TEMPLATE
@@ -127,21 +99,6 @@ void SWEEPGRID_ENGINE::erase(const Key& key) {
   core_.objects().erase(id);
 }
 
-SWEEPGRID_ENGINE_TEMPLATE
-void SWEEPGRID_ENGINE::erase(std::span<const Handle> objects) {
-  for (const Handle object : objects) static_cast<void>(live(object, "erase"));
-  for (std::size_t i = 0; i < objects.size(); ++i) {
-    if (core_.objects().good(objects[i])) {
-      core_.objects().erase(objects[i].index);
-      continue;
-    }
-    for (std::size_t done = 0; done < i; ++done) core_.objects().cancel_erase(objects[done].index);
-    throw std::invalid_argument("sweepgrid: erase of " + describe(keys_.key(objects[i].index)) +
-                                ": the call names it twice");
-  }
-  for (const Handle object : objects) keys_.erase(object.index);
-}
-
 // ---- the step and what it leaves
 
 SWEEPGRID_ENGINE_TEMPLATE
@@ -152,6 +109,7 @@ const Events<Key>& SWEEPGRID_ENGINE::step() {
   }
   core_.step();
   core_.count_events(events_.begins.size(), events_.ends.size());
+  if (core_.objects().trim()) keys_.trim(core_.objects().bound());
   return events_;
 }
 
@@ -273,3 +231,5 @@ void SWEEPGRID_ENGINE::require_same_size(std::size_t objects, std::size_t boxes,
 #undef SWEEPGRID_ENGINE
 
 }  // namespace sweepgrid
+
+#include <sweepgrid/engine/bulk.inl.hpp>

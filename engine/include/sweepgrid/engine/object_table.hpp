@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
@@ -10,6 +11,7 @@
 #include <vector>
 
 #include <sweepgrid/engine/handle.hpp>
+#include <sweepgrid/engine/item_partition.hpp>
 #include <sweepgrid/engine/stable_vector.hpp>
 #include <sweepgrid/grid/levels.hpp>
 #include <sweepgrid/sap/box.hpp>
@@ -51,19 +53,61 @@ class ObjectTable {
 
   /// Throws std::length_error at 2^32 - 1 objects. Precondition: a valid box.
   Handle insert(const BoxType& box);
-
-  /// Precondition of these: `object` is live and not erased.
-  void update(ObjectId object, const BoxType& box);
-  void erase(ObjectId object);
-  /// Takes erase() back.
-  void cancel_erase(ObjectId object);
   /// Takes insert() back.
   void cancel_insert(ObjectId object);
 
+  /// Precondition of these: `object` is live and not erased; of update, a valid box.
+  void update(ObjectId object, const BoxType& box);
+  void erase(ObjectId object);
+
+  /// One worker's share of a bulk call, and how far it has come.
+  struct Share {
+    Items items;
+    std::size_t done = 0;     // items [0, done) are applied
+    std::size_t checked = 0;  // items [done, checked) can be; if there are more, the next one cannot
+    double widest = 0;        // of the boxes applied
+    bool queued = false;      // an op
+  };
+
+  /// Ids of a bulk insert, by item.
+  class NewIds {
+   public:
+    [[nodiscard]] bool fresh(std::size_t item) const { return item >= reused_.size(); }
+    [[nodiscard]] ObjectId operator[](std::size_t item) const {
+      return fresh(item) ? first_ + static_cast<ObjectId>(item - reused_.size()) : reused_[item];
+    }
+
+   private:
+    friend class ObjectTable;
+    std::vector<ObjectId> reused_;
+    ObjectId first_ = 0;
+    std::size_t count_ = 0;
+  };
+
+  // Bulk calls: first every share is begun, at once if no two concern the same object; if all that they are
+  // to do can be done, each is finished, else each is taken back. The engine is then as it was, but for granules marked
+  // without a need: always those of all the objects that the call names.
+
+  /// Ids in the order in which as many calls of insert() would give them. Throws as insert().
+  NewIds reserve(std::size_t count);
+  void begin_insert(Share& share, const NewIds& ids, std::span<const BoxType> boxes, std::span<Handle> handles);
+  void finish_insert(const Share& share);
+  void cancel_insert(const NewIds& ids);
+
+  /// Applies items up to the first object that has a queued op already, for its box could not be told when taken back.
+  /// Of the others, only checks that the handle and the box are good.
+  void begin_update(Share& share, std::span<const Handle> objects, std::span<const BoxType> boxes);
+  void finish_update(Share& share, std::span<const Handle> objects, std::span<const BoxType> boxes);
+  void cancel_update(const Share& share, std::span<const Handle> objects);
+
+  /// Good are handles that are good and have not come before.
+  void begin_erase(Share& share, std::span<const Handle> objects);
+  void finish_erase(const Share& share);
+  void cancel_erase(const Share& share, std::span<const Handle> objects);
+
   /// Whether the handle names an object that is live and not erased.
   [[nodiscard]] bool good(Handle handle) const {
-    return handle.index < bound() && (states_[handle.index] & (kLive | kErased)) == kLive &&
-           records_[handle.index].generation == handle.generation;
+    return handle.index < bound() && good(handle, records_[handle.index], states_[handle.index]);
   }
   [[nodiscard]] Handle handle(ObjectId object) const { return {object, records_[object].generation}; }
 
@@ -85,7 +129,10 @@ class ObjectTable {
   [[nodiscard]] std::uint32_t granules() const { return (bound() + (kGranule - 1)) / kGranule; }
   [[nodiscard]] bool granule_marked(std::uint32_t granule) const { return marks_[granule] != 0; }
   void unmark_granule(std::uint32_t granule) { marks_[granule] = 0; }
-  void nothing_queued() { queued_.store(false, std::memory_order_relaxed); }
+  void nothing_queued() {
+    queued_.store(false, std::memory_order_relaxed);
+    ++latest_generation_;
+  }
 
   /// Makes an erased object's id stale; free_ids() then lets it be reused.
   void retire(ObjectId object) {
@@ -94,24 +141,54 @@ class ObjectTable {
   }
   void free_ids(std::span<const ObjectId> ids) { free_.insert(free_.end(), ids.begin(), ids.end()); }
 
+  /// To be called when nothing is queued. When few objects are left, lowers bound() below the free ids at the top and
+  /// gives their memory back; returns whether it did. Handles of what lived there stay stale. O(1), seldom O(bound()).
+  bool trim();
+
+  /// Memory in use: see StableVector::bytes().
   [[nodiscard]] std::size_t bytes() const {
     return records_.bytes() + states_.bytes() + marks_.bytes() + free_.capacity() * sizeof(ObjectId);
   }
 
  private:
-  void mark(ObjectId object, std::uint8_t flag) {
-    states_[object] |= flag;
-    // Neighbours of different threads share a granule, so these two are atomic; checked first to keep the line shared.
-    std::atomic_ref<std::uint8_t> granule(marks_[object / kGranule]);
-    if (granule.load(std::memory_order_relaxed) == 0) granule.store(1, std::memory_order_relaxed);
+  [[nodiscard]] bool good(Handle handle, const Record& record, std::uint8_t state) const {
+    return (state & (kLive | kErased)) == kLive && record.generation == handle.generation;
+  }
+
+  // Neighbours of different threads share a granule, so this is atomic; checked first to keep the line shared.
+  void mark_granule(std::uint32_t granule) {
+    const std::atomic_ref<std::uint8_t> mark(marks_[granule]);
+    if (mark.load(std::memory_order_relaxed) == 0) mark.store(1, std::memory_order_relaxed);
+  }
+  void mark(ObjectId object) {
+    mark_granule(object / kGranule);
+    something_queued();
+  }
+  void something_queued() {
     if (!queued_.load(std::memory_order_relaxed)) queued_.store(true, std::memory_order_relaxed);
+  }
+  void mark_all(const Share& share, std::span<const Handle> objects);
+
+  // Sees to it that the record of an item a little ahead is on its way to the cache.
+  void prefetch(const Share& share, std::size_t i, std::span<const Handle> objects, ObjectId end) {
+    constexpr std::size_t kAhead = 12;
+    if (i + kAhead >= share.items.size()) return;
+    const ObjectId object = objects[share.items[i + kAhead]].index;
+    if (object < end) __builtin_prefetch(&records_[object], 1);
+  }
+
+  ObjectId extend(std::size_t count);
+  void occupy(ObjectId object, bool fresh, const BoxType& box);
+  void renew(ObjectId object) {
+    records_[object].generation = first_generation_;
+    records_[object].changed_at = 0;
   }
 
   // By bits: where the host flushes denormals to zero, == would take two of them for one.
   static bool same_bits(const BoxType& a, const BoxType& b) { return std::memcmp(&a, &b, sizeof(a)) == 0; }
 
-  void measure(const BoxType& box) {
-    const double width = Levels<Scalar, Dim>::width(box);
+  static double width(const BoxType& box) { return Levels<Scalar, Dim>::width(box); }
+  void measure(double width) {
     double widest = widest_.load(std::memory_order_relaxed);
     while (width > widest && !widest_.compare_exchange_weak(widest, width, std::memory_order_relaxed)) {
     }
@@ -124,70 +201,15 @@ class ObjectTable {
   std::atomic<std::size_t> live_ = 0;
   std::atomic<bool> queued_ = false;
   std::atomic<double> widest_ = 0;
-  std::mutex allocation_;  // guards what follows, and growth
+  // Every generation is at most this: at most one retirement for an object and a step. A fresh record begins with what
+  // it was when records were given back, so that no handle of theirs can be good again.
+  std::uint32_t latest_generation_ = 0;
+  std::uint32_t first_generation_ = 0;
+  std::size_t trim_at_ = 0;  // number of objects left at which trim() looks next
+  std::mutex allocation_;    // guards what follows, and growth
   std::vector<ObjectId> free_;
 };
 
-template <class Scalar, int Dim>
-Handle ObjectTable<Scalar, Dim>::insert(const BoxType& box) {
-  ObjectId object;
-  {
-    const std::lock_guard lock(allocation_);
-    if (!free_.empty()) {
-      object = free_.back();
-      free_.pop_back();
-    } else {
-      object = bound();
-      if (object == kNoObject) throw std::length_error("sweepgrid: more than 2^32 - 1 objects");
-      records_.grow(std::uint64_t{object} + 1);
-      states_.grow(std::uint64_t{object} + 1);
-      marks_.grow(object / kGranule + std::uint64_t{1});
-      records_[object].generation = 0;
-      records_[object].changed_at = 0;
-      states_[object] = 0;
-      if (object % kGranule == 0) marks_[object / kGranule] = 0;
-      bound_.store(object + 1, std::memory_order_release);
-    }
-  }
-  measure(box);
-  records_[object].box = box;
-  states_[object] = kLive;
-  mark(object, kInserted);
-  live_.fetch_add(1, std::memory_order_relaxed);
-  return handle(object);
-}
-
-template <class Scalar, int Dim>
-void ObjectTable<Scalar, Dim>::update(ObjectId object, const BoxType& box) {
-  Record& record = records_[object];
-  if ((states_[object] & kQueued) == 0) {
-    if (same_bits(record.box, box)) return;  // a resting object that its client reports anyway costs nothing more
-    record.before = record.box;
-    mark(object, kUpdated);
-  }
-  measure(box);
-  record.box = box;
-}
-
-template <class Scalar, int Dim>
-void ObjectTable<Scalar, Dim>::erase(ObjectId object) {
-  if ((states_[object] & kQueued) == 0) records_[object].before = records_[object].box;
-  mark(object, kErased);
-  live_.fetch_sub(1, std::memory_order_relaxed);
-}
-
-template <class Scalar, int Dim>
-void ObjectTable<Scalar, Dim>::cancel_erase(ObjectId object) {
-  states_[object] &= static_cast<std::uint8_t>(~kErased);
-  live_.fetch_add(1, std::memory_order_relaxed);
-}
-
-template <class Scalar, int Dim>
-void ObjectTable<Scalar, Dim>::cancel_insert(ObjectId object) {
-  live_.fetch_sub(1, std::memory_order_relaxed);
-  retire(object);
-  const std::lock_guard lock(allocation_);
-  free_.push_back(object);
-}
-
 }  // namespace sweepgrid
+
+#include <sweepgrid/engine/object_table.inl.hpp>

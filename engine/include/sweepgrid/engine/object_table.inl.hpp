@@ -1,0 +1,259 @@
+#pragma once
+
+#include <algorithm>
+#include <stdexcept>
+
+#include <sweepgrid/engine/object_table.hpp>
+
+namespace sweepgrid {
+
+// ---- one object
+
+template <class Scalar, int Dim>
+Handle ObjectTable<Scalar, Dim>::insert(const BoxType& box) {
+  ObjectId object;
+  bool fresh = false;
+  {
+    const std::lock_guard lock(allocation_);
+    if (!free_.empty()) {
+      object = free_.back();
+      free_.pop_back();
+    } else {
+      object = extend(1);
+      fresh = true;
+    }
+  }
+  occupy(object, fresh, box);
+  mark(object);
+  measure(width(box));
+  live_.fetch_add(1, std::memory_order_relaxed);
+  return handle(object);
+}
+
+template <class Scalar, int Dim>
+void ObjectTable<Scalar, Dim>::cancel_insert(ObjectId object) {
+  live_.fetch_sub(1, std::memory_order_relaxed);
+  retire(object);
+  const std::lock_guard lock(allocation_);
+  ++latest_generation_;
+  free_.push_back(object);
+}
+
+template <class Scalar, int Dim>
+void ObjectTable<Scalar, Dim>::update(ObjectId object, const BoxType& box) {
+  Record& record = records_[object];
+  std::uint8_t& state = states_[object];
+  if ((state & kQueued) == 0) {
+    if (same_bits(record.box, box)) return;  // a resting object that its client reports anyway costs nothing more
+    record.before = record.box;
+    state |= kUpdated;
+    mark(object);
+  }
+  measure(width(box));
+  record.box = box;
+}
+
+template <class Scalar, int Dim>
+void ObjectTable<Scalar, Dim>::erase(ObjectId object) {
+  if ((states_[object] & kQueued) == 0) records_[object].before = records_[object].box;
+  states_[object] |= kErased;
+  mark(object);
+  live_.fetch_sub(1, std::memory_order_relaxed);
+}
+
+// ---- many
+
+template <class Scalar, int Dim>
+auto ObjectTable<Scalar, Dim>::reserve(std::size_t count) -> NewIds {
+  NewIds ids;
+  ids.count_ = count;
+  const std::lock_guard lock(allocation_);
+  const auto reused = static_cast<std::ptrdiff_t>(std::min(count, free_.size()));
+  ids.reused_.assign(free_.rbegin(), free_.rbegin() + reused);
+  ids.first_ = extend(count - ids.reused_.size());
+  free_.resize(free_.size() - ids.reused_.size());
+  return ids;
+}
+
+template <class Scalar, int Dim>
+void ObjectTable<Scalar, Dim>::begin_insert(Share& share, const NewIds& ids, std::span<const BoxType> boxes,
+                                            std::span<Handle> handles) {
+  for (; share.done < share.items.size(); ++share.done) {
+    const std::size_t item = share.items[share.done];
+    if (!boxes[item].valid()) break;
+    const ObjectId object = ids[item];
+    occupy(object, ids.fresh(item), boxes[item]);
+    mark_granule(object / kGranule);
+    handles[item] = handle(object);
+    share.widest = std::max(share.widest, width(boxes[item]));
+  }
+  share.checked = share.done;
+}
+
+template <class Scalar, int Dim>
+void ObjectTable<Scalar, Dim>::finish_insert(const Share& share) {
+  if (share.done == 0) return;
+  live_.fetch_add(share.done, std::memory_order_relaxed);
+  measure(share.widest);
+  something_queued();
+}
+
+template <class Scalar, int Dim>
+void ObjectTable<Scalar, Dim>::cancel_insert(const NewIds& ids) {
+  for (std::size_t item = 0; item < ids.count_; ++item) {
+    states_[ids[item]] = 0;
+    mark_granule(ids[item] / kGranule);
+  }
+  const std::lock_guard lock(allocation_);
+  // Nobody was told of these ids, so they need no new generation.
+  const auto fresh = static_cast<ObjectId>(ids.count_ - ids.reused_.size());
+  if (ids.first_ + fresh == bound()) {
+    bound_.store(ids.first_, std::memory_order_release);
+  } else {
+    for (ObjectId object = ids.first_ + fresh; object-- > ids.first_;) {
+      renew(object);
+      free_.push_back(object);
+    }
+  }
+  free_.insert(free_.end(), ids.reused_.rbegin(), ids.reused_.rend());
+}
+
+template <class Scalar, int Dim>
+void ObjectTable<Scalar, Dim>::begin_update(Share& share, std::span<const Handle> objects,
+                                            std::span<const BoxType> boxes) {
+  const ObjectId end = bound();
+  bool applies = true;
+  for (std::size_t i = 0; i < share.items.size(); ++i) {
+    const std::size_t item = share.items[i];
+    prefetch(share, i, objects, end);
+    const Handle object = objects[item];
+    if (object.index >= end) return;
+    Record& record = records_[object.index];
+    std::uint8_t& state = states_[object.index];
+    if (!good(object, record, state) || !boxes[item].valid()) return;
+    ++share.checked;
+    applies = applies && (state & kQueued) == 0;
+    if (!applies) continue;
+    ++share.done;
+    if (same_bits(record.box, boxes[item])) continue;
+    record.before = record.box;
+    record.box = boxes[item];
+    state |= kUpdated;
+    share.queued = true;
+    mark_granule(object.index / kGranule);
+    share.widest = std::max(share.widest, width(boxes[item]));
+  }
+}
+
+template <class Scalar, int Dim>
+void ObjectTable<Scalar, Dim>::finish_update(Share& share, std::span<const Handle> objects,
+                                             std::span<const BoxType> boxes) {
+  for (; share.done < share.items.size(); ++share.done) {
+    prefetch(share, share.done, objects, bound());
+    const std::size_t item = share.items[share.done];
+    update(objects[item].index, boxes[item]);
+  }
+  if (!share.queued) return;
+  measure(share.widest);
+  something_queued();
+}
+
+template <class Scalar, int Dim>
+void ObjectTable<Scalar, Dim>::cancel_update(const Share& share, std::span<const Handle> objects) {
+  for (std::size_t i = 0; i < share.done; ++i) {
+    const ObjectId object = objects[share.items[i]].index;
+    if ((states_[object] & kUpdated) == 0) continue;  // an item that changed nothing, or taken back already
+    records_[object].box = records_[object].before;
+    states_[object] &= static_cast<std::uint8_t>(~kUpdated);
+  }
+  mark_all(share, objects);
+}
+
+template <class Scalar, int Dim>
+void ObjectTable<Scalar, Dim>::begin_erase(Share& share, std::span<const Handle> objects) {
+  const ObjectId end = bound();
+  for (; share.done < share.items.size(); ++share.done) {
+    prefetch(share, share.done, objects, end);
+    const Handle object = objects[share.items[share.done]];
+    if (object.index >= end) break;
+    Record& record = records_[object.index];
+    std::uint8_t& state = states_[object.index];
+    if (!good(object, record, state)) break;
+    if ((state & kQueued) == 0) record.before = record.box;
+    state |= kErased;
+    mark_granule(object.index / kGranule);
+  }
+  share.checked = share.done;
+}
+
+template <class Scalar, int Dim>
+void ObjectTable<Scalar, Dim>::finish_erase(const Share& share) {
+  if (share.done == 0) return;
+  live_.fetch_sub(share.done, std::memory_order_relaxed);
+  something_queued();
+}
+
+template <class Scalar, int Dim>
+void ObjectTable<Scalar, Dim>::cancel_erase(const Share& share, std::span<const Handle> objects) {
+  for (std::size_t i = 0; i < share.done; ++i) {
+    states_[objects[share.items[i]].index] &= static_cast<std::uint8_t>(~kErased);
+  }
+  mark_all(share, objects);
+}
+
+// What is marked must not depend on how far which share had come.
+template <class Scalar, int Dim>
+void ObjectTable<Scalar, Dim>::mark_all(const Share& share, std::span<const Handle> objects) {
+  const ObjectId end = bound();
+  for (std::size_t i = 0; i < share.items.size(); ++i) {
+    const ObjectId object = objects[share.items[i]].index;
+    if (object < end) mark_granule(object / kGranule);
+  }
+}
+
+// ---- ids
+
+// Makes new ids; returns the first.
+template <class Scalar, int Dim>
+ObjectId ObjectTable<Scalar, Dim>::extend(std::size_t count) {
+  const ObjectId first = bound();
+  if (count > kNoObject - first) throw std::length_error("sweepgrid: more than 2^32 - 1 objects");
+  const ObjectId end = first + static_cast<ObjectId>(count);
+  if (end == first) return first;
+  records_.grow(end);
+  states_.grow(end);
+  marks_.grow((end - 1) / kGranule + std::uint64_t{1});
+  for (std::uint64_t granule = (first + (kGranule - 1)) / kGranule; granule <= (end - 1) / kGranule; ++granule) {
+    marks_[static_cast<std::uint32_t>(granule)] = 0;
+  }
+  trim_at_ = end / 4;
+  bound_.store(end, std::memory_order_release);
+  return first;
+}
+
+template <class Scalar, int Dim>
+void ObjectTable<Scalar, Dim>::occupy(ObjectId object, bool fresh, const BoxType& box) {
+  Record& record = records_[object];
+  record.box = box;
+  if (fresh) renew(object);
+  states_[object] = kLive | kInserted;
+}
+
+template <class Scalar, int Dim>
+bool ObjectTable<Scalar, Dim>::trim() {
+  if (size() > trim_at_) return false;
+  ObjectId end = bound();
+  while (end > 0 && states_[end - 1] == 0) --end;
+  trim_at_ = size() / 2;
+  if (end == bound()) return false;
+  std::erase_if(free_, [&](ObjectId object) { return object >= end; });
+  free_.shrink_to_fit();
+  bound_.store(end, std::memory_order_release);
+  records_.shrink(end);
+  states_.shrink(end);
+  marks_.shrink((end + (kGranule - 1)) / kGranule);
+  first_generation_ = latest_generation_;
+  return true;
+}
+
+}  // namespace sweepgrid
