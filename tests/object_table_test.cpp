@@ -184,7 +184,7 @@ TEST(ObjectTable, MarksWhatIsQueuedAndNothingElse) {
   EXPECT_TRUE(table.anything_queued());
   settle(table);
   EXPECT_FALSE(table.anything_queued());
-  table.update(700, kThere);
+  table.update(table.handle(700), kThere);
   EXPECT_TRUE(table.anything_queued());
   for (std::uint32_t granule = 0; granule < 4; ++granule) EXPECT_EQ(table.granule_marked(granule), granule == 2);
   EXPECT_EQ(table.state(700), Table::kLive | Table::kUpdated);
@@ -195,10 +195,10 @@ TEST(ObjectTable, AnUpdateToTheSameBoxIsNotQueued) {
   Table table;
   table.insert(kHere);
   settle(table);
-  table.update(0, kHere);
+  table.update(table.handle(0), kHere);
   EXPECT_FALSE(table.anything_queued());
-  table.update(0, kThere);
-  table.update(0, kHere);  // back again, but it has been queued by now
+  table.update(table.handle(0), kThere);
+  table.update(table.handle(0), kHere);  // back again, but it has been queued by now
   EXPECT_EQ(table.record(0).box, kHere);
   EXPECT_EQ(table.state(0), Table::kLive | Table::kUpdated);
 }
@@ -226,7 +226,7 @@ TEST(ObjectTable, TakesCallsForDifferentObjectsAtOnce) {
       for (int i = 0; i < 2000; ++i) handles.push_back(table.insert(Box2({1.0 * own, 1.0 * i}, {9, 9e9})));
       for (int i = 0; i < 2000; ++i) {
         const ObjectId object = handles[static_cast<std::size_t>(i)].index;
-        if (i % 3 == 0) table.update(object, Box2({1.0 * own, -1.0 * i}, {9, 9e9}));
+        if (i % 3 == 0) table.update(handles[static_cast<std::size_t>(i)], Box2({1.0 * own, -1.0 * i}, {9, 9e9}));
         if (i % 4 == 0) table.erase(object);
         EXPECT_EQ(table.record(object).box.min[0], own);
         EXPECT_EQ(table.good(handles[static_cast<std::size_t>(i)]), i % 4 != 0);

@@ -74,8 +74,7 @@ void SWEEPGRID_ENGINE::update(std::span<const Handle> objects, std::span<const B
   for_shares(shares, [&](Share& share) { table.begin_update(share, objects, boxes); });
   if (const auto bad = first_bad(shares)) {
     for (const Share& share : shares) table.cancel_update(share, objects);
-    const ObjectId id = live(objects[*bad], "update");
-    require_valid(boxes[*bad], keys_.key(id), "update");
+    require_valid(boxes[*bad], keys_.key(live(objects[*bad], "update")), "update");
   }
   for_shares(shares, [&](Share& share) { table.finish_update(share, objects, boxes); });
 }

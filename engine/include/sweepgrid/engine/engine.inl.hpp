@@ -73,16 +73,14 @@ Handle SWEEPGRID_ENGINE::insert(const Key& key, const BoxType& box) {
 
 SWEEPGRID_ENGINE_TEMPLATE
 void SWEEPGRID_ENGINE::update(Handle object, const BoxType& box) {
-  const ObjectId id = live(object, "update");
-  if (!box.valid()) require_valid(box, keys_.key(id), "update");
-  core_.objects().update(id, box);
+  if (core_.objects().update(object, box)) return;
+  require_valid(box, keys_.key(live(object, "update")), "update");
 }
 
 SWEEPGRID_ENGINE_TEMPLATE
 void SWEEPGRID_ENGINE::update(const Key& key, const BoxType& box) {
   const ObjectId id = live(key, "update");
-  require_valid(box, key, "update");
-  core_.objects().update(id, box);
+  if (!core_.objects().update(core_.objects().handle(id), box)) require_valid(box, key, "update");
 }
 
 SWEEPGRID_ENGINE_TEMPLATE

@@ -56,8 +56,9 @@ class ObjectTable {
   /// Takes insert() back.
   void cancel_insert(ObjectId object);
 
-  /// Precondition of these: `object` is live and not erased; of update, a valid box.
-  void update(ObjectId object, const BoxType& box);
+  /// Returns whether it is done; else the handle is not good or the box not valid.
+  bool update(Handle object, const BoxType& box);
+  /// Precondition: `object` is live and not erased.
   void erase(ObjectId object);
 
   /// One worker's share of a bulk call, and how far it has come.
@@ -156,7 +157,7 @@ class ObjectTable {
   }
 
   // Neighbours of different threads share a granule, so this is atomic; checked first to keep the line shared.
-  void mark_granule(std::uint32_t granule) {
+  [[gnu::always_inline]] void mark_granule(std::uint32_t granule) {
     const std::atomic_ref<std::uint8_t> mark(marks_[granule]);
     if (mark.load(std::memory_order_relaxed) == 0) mark.store(1, std::memory_order_relaxed);
   }
@@ -169,8 +170,10 @@ class ObjectTable {
   }
   void mark_all(const Share& share, std::span<const Handle> objects);
 
-  // Sees to it that the record of an item a little ahead is on its way to the cache.
-  void prefetch(const Share& share, std::size_t i, std::span<const Handle> objects, ObjectId end) {
+  // Sees to it that the record of an item a little ahead is on its way to the cache. Inline, or else the compiler takes
+  // it for a function without effect.
+  [[gnu::always_inline]] void prefetch(const Share& share, std::size_t i, std::span<const Handle> objects,
+                                       ObjectId end) {
     constexpr std::size_t kAhead = 12;
     if (i + kAhead >= share.items.size()) return;
     const ObjectId object = objects[share.items[i + kAhead]].index;
@@ -185,7 +188,19 @@ class ObjectTable {
   }
 
   // By bits: where the host flushes denormals to zero, == would take two of them for one.
-  static bool same_bits(const BoxType& a, const BoxType& b) { return std::memcmp(&a, &b, sizeof(a)) == 0; }
+  static bool same_bits(const BoxType& a, const BoxType& b) {
+    constexpr std::size_t kWord = sizeof(std::uint64_t);
+    if constexpr (sizeof(BoxType) % kWord != 0) return std::memcmp(&a, &b, sizeof(a)) == 0;
+    std::uint64_t differing = 0;
+    for (std::size_t byte = 0; byte < sizeof(BoxType); byte += kWord) {
+      std::uint64_t x;
+      std::uint64_t y;
+      std::memcpy(&x, reinterpret_cast<const char*>(&a) + byte, kWord);
+      std::memcpy(&y, reinterpret_cast<const char*>(&b) + byte, kWord);
+      differing |= x ^ y;
+    }
+    return differing == 0;
+  }
 
   static double width(const BoxType& box) { return Levels<Scalar, Dim>::width(box); }
   void measure(double width) {

@@ -40,17 +40,20 @@ void ObjectTable<Scalar, Dim>::cancel_insert(ObjectId object) {
 }
 
 template <class Scalar, int Dim>
-void ObjectTable<Scalar, Dim>::update(ObjectId object, const BoxType& box) {
-  Record& record = records_[object];
-  std::uint8_t& state = states_[object];
+bool ObjectTable<Scalar, Dim>::update(Handle object, const BoxType& box) {
+  if (object.index >= bound()) return false;
+  Record& record = records_[object.index];
+  std::uint8_t& state = states_[object.index];
+  if (!good(object, record, state) || !box.valid()) return false;
   if ((state & kQueued) == 0) {
-    if (same_bits(record.box, box)) return;  // a resting object that its client reports anyway costs nothing more
+    if (same_bits(record.box, box)) return true;  // a resting object that its client reports anyway costs nothing more
     record.before = record.box;
     state |= kUpdated;
-    mark(object);
+    mark(object.index);
   }
-  measure(width(box));
   record.box = box;
+  measure(width(box));
+  return true;
 }
 
 template <class Scalar, int Dim>
@@ -122,27 +125,28 @@ template <class Scalar, int Dim>
 void ObjectTable<Scalar, Dim>::begin_update(Share& share, std::span<const Handle> objects,
                                             std::span<const BoxType> boxes) {
   const ObjectId end = bound();
+  Share now = share;  // the compiler cannot know that marks are not written into `share`
   bool applies = true;
-  for (std::size_t i = 0; i < share.items.size(); ++i) {
-    const std::size_t item = share.items[i];
-    prefetch(share, i, objects, end);
+  for (; now.checked < now.items.size(); ++now.checked) {
+    prefetch(now, now.checked, objects, end);
+    const std::size_t item = now.items[now.checked];
     const Handle object = objects[item];
-    if (object.index >= end) return;
+    if (object.index >= end) break;
     Record& record = records_[object.index];
     std::uint8_t& state = states_[object.index];
-    if (!good(object, record, state) || !boxes[item].valid()) return;
-    ++share.checked;
+    if (!good(object, record, state) || !boxes[item].valid()) break;
     applies = applies && (state & kQueued) == 0;
     if (!applies) continue;
-    ++share.done;
+    ++now.done;
     if (same_bits(record.box, boxes[item])) continue;
     record.before = record.box;
     record.box = boxes[item];
     state |= kUpdated;
-    share.queued = true;
     mark_granule(object.index / kGranule);
-    share.widest = std::max(share.widest, width(boxes[item]));
+    now.queued = true;
+    now.widest = std::max(now.widest, width(boxes[item]));
   }
+  share = now;
 }
 
 template <class Scalar, int Dim>
@@ -151,7 +155,7 @@ void ObjectTable<Scalar, Dim>::finish_update(Share& share, std::span<const Handl
   for (; share.done < share.items.size(); ++share.done) {
     prefetch(share, share.done, objects, bound());
     const std::size_t item = share.items[share.done];
-    update(objects[item].index, boxes[item]);
+    update(objects[item], boxes[item]);
   }
   if (!share.queued) return;
   measure(share.widest);
