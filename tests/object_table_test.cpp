@@ -53,6 +53,31 @@ TEST(StableVector, HoldsNothingAtFirstAndAtMostTwiceWhatIsAskedFor) {
   EXPECT_EQ(vector.bytes(), bytes);
 }
 
+TEST(StableVector, GivesBackWholeBlocksAndGrowsAgain) {
+  StableVector<std::uint32_t> vector;
+  vector.grow(100'000);
+  for (std::uint32_t index = 0; index < 100'000; ++index) vector[index] = index;
+  const std::size_t bytes = vector.bytes();
+  vector.shrink(3000);
+  EXPECT_LT(vector.bytes(), bytes / 10);
+  for (std::uint32_t index = 0; index < 3000; ++index) ASSERT_EQ(vector[index], index);
+  vector.grow(100'000);
+  EXPECT_EQ(vector.bytes(), bytes);
+  vector[99'999] = 5;
+  for (std::uint32_t index = 0; index < 3000; ++index) ASSERT_EQ(vector[index], index);
+  vector.shrink(0);
+  EXPECT_EQ(vector.bytes(), 0u);
+}
+
+TEST(StableVector, CountsWhatIsAskedForOfTrivialTypesAndAllOfOthers) {
+  StableVector<std::uint64_t> trivial;
+  StableVector<std::string> strings;
+  trivial.grow(1025);
+  strings.grow(1025);
+  EXPECT_EQ(trivial.bytes(), 1025 * sizeof(std::uint64_t));
+  EXPECT_EQ(strings.bytes(), 2048 * sizeof(std::string));
+}
+
 // ---- KeyTable
 
 /// A few values only, so that keys collide all the time and clusters wrap round the end of the buckets.
@@ -124,6 +149,19 @@ TEST(KeyTable, TakesCallsForDifferentKeysAtOnce) {
   for (std::uint64_t key = 0; key < 8000; ++key) {
     ASSERT_EQ(table.find(key), key % 3 == 0 ? kNoObject : static_cast<ObjectId>(key));
   }
+}
+
+TEST(KeyTable, FewKeysKeepFewBuckets) {
+  KeyTable<std::uint64_t, std::hash<std::uint64_t>> table;
+  for (std::uint64_t key = 0; key < 50'000; ++key) table.insert(key << 32, [&] { return static_cast<ObjectId>(key); });
+  const std::size_t bytes = table.bytes();
+  for (ObjectId object = 1000; object < 50'000; ++object) table.erase(object);
+  for (std::uint64_t key = 0; key < 50'000; ++key) {
+    ASSERT_EQ(table.find(key << 32), key < 1000 ? static_cast<ObjectId>(key) : kNoObject);
+  }
+  table.trim(1000);
+  EXPECT_LT(table.bytes(), bytes / 10);
+  ASSERT_EQ(table.key(999), std::uint64_t{999} << 32);
 }
 
 // ---- ObjectTable
@@ -215,6 +253,38 @@ TEST(ObjectTable, AnInsertCanBeTakenBack) {
   const Handle third = table.insert(kThere);
   EXPECT_EQ(third.index, second.index);
   EXPECT_NE(third, second);
+}
+
+TEST(ObjectTable, ARecordIsACacheLineWhereItFits) {
+  ObjectTable<float, 3> table;
+  static_assert(sizeof(ObjectTable<float, 3>::Record) == 64);
+  for (int i = 0; i < 3000; ++i) table.insert(Box<float, 3>({0, 0, 0}, {1, 1, 1}));
+  for (ObjectId object = 0; object < table.bound(); ++object) {
+    ASSERT_EQ(reinterpret_cast<std::uintptr_t>(&table.record(object)) % 64, 0u);
+  }
+}
+
+TEST(ObjectTable, IdsAtTheTopAreForgottenWhenFewObjectsAreLeft) {
+  Table table;
+  std::vector<Handle> handles;
+  for (int i = 0; i < 5000; ++i) handles.push_back(table.insert(kHere));
+  settle(table);
+  EXPECT_FALSE(table.trim());
+  for (std::size_t i = 0; i < handles.size(); ++i) {
+    if (i != 3 && i != 700) table.erase(handles[i].index);
+  }
+  settle(table);
+  EXPECT_TRUE(table.trim());
+  EXPECT_EQ(table.bound(), 701u);
+  EXPECT_FALSE(table.trim());
+  std::set<ObjectId> ids;
+  for (int i = 0; i < 5000; ++i) {
+    const Handle handle = table.insert(kThere);
+    EXPECT_TRUE(ids.insert(handle.index).second);
+    ASSERT_TRUE(table.good(handle));
+  }
+  EXPECT_EQ(table.bound(), 5002u);
+  for (std::size_t i = 0; i < handles.size(); ++i) ASSERT_EQ(table.good(handles[i]), i == 3 || i == 700) << i;
 }
 
 TEST(ObjectTable, TakesCallsForDifferentObjectsAtOnce) {

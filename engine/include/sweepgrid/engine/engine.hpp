@@ -33,7 +33,11 @@ namespace sweepgrid {
 /// concern the same object. All other calls want the engine for themselves.
 ///
 /// Errors: bad input throws std::invalid_argument (or std::length_error at the limit of 2^32 - 1 objects) with a
-/// message that names the object, and leaves the engine as it was. A bulk call applies wholly or not at all.
+/// message that names the object, and leaves the engine as it was. A bulk call applies wholly or not at all, and names
+/// the first bad object.
+///
+/// Bulk calls for many objects (some ten thousands) run on the engine's workers. Objects, handles, events and counters
+/// are then the same as those of one call for each in the same order.
 template <class Scalar, int Dim, class Key = std::uint64_t, class Hash = std::hash<Key>, class Order = KeyOrder<Key>>
 class Engine {
  public:
@@ -46,7 +50,8 @@ class Engine {
   /// Queues a new object; it takes part from the next step() on. The handle is good at once.
   /// Errors: `key` names a live object; `box` has a NaN or min > max. O(1).
   Handle insert(const Key& key, const BoxType& box);
-  /// As above for keys[i], boxes[i]; handles are returned in order. Also an error: a key twice in `keys`.
+  /// As above for keys[i], boxes[i]; handles are returned in order. Also an error: a key twice in `keys`. The fastest
+  /// way to insert many. O(n / workers), and what is serial is short.
   std::vector<Handle> insert(std::span<const Key> keys, std::span<const BoxType> boxes);
 
   /// Queues a new box. The last update before a step wins. An update to the box that the object has costs nothing more.
@@ -54,14 +59,16 @@ class Engine {
   /// where no object of this one has its index and generation. O(1).
   void update(Handle object, const BoxType& box);
   void update(const Key& key, const BoxType& box);
-  /// As above for objects[i], boxes[i], in order. The fastest way to move many.
+  /// As above for objects[i], boxes[i], in order: the last of several for one object wins. The fastest way to move
+  /// many, above all with objects in the order of their handles' indices, or boxes that are queued for the first time
+  /// since the latest step. O(n / workers).
   void update(std::span<const Handle> objects, std::span<const BoxType> boxes);
 
   /// Queues the end of an object: the next step() ends all its pairs. Its handle is stale and its key free at once.
   /// An object inserted and erased before the same step leaves no trace. Errors: as update. O(1).
   void erase(Handle object);
   void erase(const Key& key);
-  /// Also an error: an object twice in `objects`.
+  /// Also an error: an object twice in `objects`. O(n / workers).
   void erase(std::span<const Handle> objects);
 
   /// Applies all that was queued and returns the net change of the set of overlapping pairs since the last step: the

@@ -21,6 +21,7 @@ class Items {
   explicit Items(std::span<const std::uint32_t> list) : list_(list.data()), count_(list.size()) {}
 
   [[nodiscard]] std::size_t size() const { return count_; }
+  [[nodiscard]] bool listed() const { return list_ != nullptr; }
   [[nodiscard]] std::size_t operator[](std::size_t i) const { return list_ != nullptr ? list_[i] : first_ + i; }
 
  private:

@@ -170,15 +170,20 @@ class ObjectTable {
   }
   void mark_all(const Share& share, std::span<const Handle> objects);
 
-  // Sees to it that the record of an item a little ahead is on its way to the cache. Inline, or else the compiler takes
-  // it for a function without effect.
-  [[gnu::always_inline]] void prefetch(const Share& share, std::size_t i, std::span<const Handle> objects,
-                                       ObjectId end) {
+  // Sees to it that the records of items a little ahead are on their way to the cache; of a list, also what is to be
+  // known of them first. Inline, or else the compiler takes it for a function without effect.
+  [[gnu::always_inline]] void prefetch(const Items& items, std::size_t i, std::span<const Handle> objects,
+                                       const BoxType* boxes, ObjectId end) {
     constexpr std::size_t kAhead = 12;
-    if (i + kAhead >= share.items.size()) return;
-    const ObjectId object = objects[share.items[i + kAhead]].index;
-    if (object < end) __builtin_prefetch(&records_[object], 1);
+    if (i + kAhead >= items.size()) return;
+    const std::size_t item = items[i + kAhead];
+    if (objects[item].index < end) __builtin_prefetch(&records_[objects[item].index], 1);
+    if (!items.listed()) return;
+    if (boxes != nullptr) __builtin_prefetch(&boxes[item]);
+    if (i + 2 * kAhead < items.size()) __builtin_prefetch(&objects[items[i + 2 * kAhead]]);
   }
+
+  [[gnu::always_inline]] bool replace(ObjectId object, const BoxType& box, double& widest);
 
   ObjectId extend(std::size_t count);
   void occupy(ObjectId object, bool fresh, const BoxType& box);

@@ -41,18 +41,27 @@ void ObjectTable<Scalar, Dim>::cancel_insert(ObjectId object) {
 
 template <class Scalar, int Dim>
 bool ObjectTable<Scalar, Dim>::update(Handle object, const BoxType& box) {
-  if (object.index >= bound()) return false;
-  Record& record = records_[object.index];
-  std::uint8_t& state = states_[object.index];
-  if (!good(object, record, state) || !box.valid()) return false;
+  if (!good(object) || !box.valid()) return false;
+  double widest = 0;
+  if (!replace(object.index, box, widest)) return true;
+  something_queued();
+  measure(widest);
+  return true;
+}
+
+// Returns whether the object has a queued op now.
+template <class Scalar, int Dim>
+inline bool ObjectTable<Scalar, Dim>::replace(ObjectId object, const BoxType& box, double& widest) {
+  Record& record = records_[object];
+  std::uint8_t& state = states_[object];
   if ((state & kQueued) == 0) {
-    if (same_bits(record.box, box)) return true;  // a resting object that its client reports anyway costs nothing more
+    if (same_bits(record.box, box)) return false;  // a resting object that its client reports anyway costs nothing more
     record.before = record.box;
     state |= kUpdated;
-    mark(object.index);
+    mark_granule(object / kGranule);
   }
   record.box = box;
-  measure(width(box));
+  widest = std::max(widest, width(box));
   return true;
 }
 
@@ -128,7 +137,7 @@ void ObjectTable<Scalar, Dim>::begin_update(Share& share, std::span<const Handle
   Share now = share;  // the compiler cannot know that marks are not written into `share`
   bool applies = true;
   for (; now.checked < now.items.size(); ++now.checked) {
-    prefetch(now, now.checked, objects, end);
+    prefetch(now.items, now.checked, objects, boxes.data(), end);
     const std::size_t item = now.items[now.checked];
     const Handle object = objects[item];
     if (object.index >= end) break;
@@ -138,13 +147,7 @@ void ObjectTable<Scalar, Dim>::begin_update(Share& share, std::span<const Handle
     applies = applies && (state & kQueued) == 0;
     if (!applies) continue;
     ++now.done;
-    if (same_bits(record.box, boxes[item])) continue;
-    record.before = record.box;
-    record.box = boxes[item];
-    state |= kUpdated;
-    mark_granule(object.index / kGranule);
-    now.queued = true;
-    now.widest = std::max(now.widest, width(boxes[item]));
+    now.queued |= replace(object.index, boxes[item], now.widest);
   }
   share = now;
 }
@@ -152,11 +155,14 @@ void ObjectTable<Scalar, Dim>::begin_update(Share& share, std::span<const Handle
 template <class Scalar, int Dim>
 void ObjectTable<Scalar, Dim>::finish_update(Share& share, std::span<const Handle> objects,
                                              std::span<const BoxType> boxes) {
-  for (; share.done < share.items.size(); ++share.done) {
-    prefetch(share, share.done, objects, bound());
-    const std::size_t item = share.items[share.done];
-    update(objects[item], boxes[item]);
+  const ObjectId end = bound();
+  Share now = share;
+  for (; now.done < now.items.size(); ++now.done) {
+    prefetch(now.items, now.done, objects, boxes.data(), end);
+    const std::size_t item = now.items[now.done];
+    now.queued |= replace(objects[item].index, boxes[item], now.widest);
   }
+  share = now;
   if (!share.queued) return;
   measure(share.widest);
   something_queued();
@@ -177,7 +183,7 @@ template <class Scalar, int Dim>
 void ObjectTable<Scalar, Dim>::begin_erase(Share& share, std::span<const Handle> objects) {
   const ObjectId end = bound();
   for (; share.done < share.items.size(); ++share.done) {
-    prefetch(share, share.done, objects, end);
+    prefetch(share.items, share.done, objects, nullptr, end);
     const Handle object = objects[share.items[share.done]];
     if (object.index >= end) break;
     Record& record = records_[object.index];
