@@ -65,14 +65,16 @@ class EngineDeterminism : public ::testing::TestWithParam<SceneRegime> {
 
 TEST_P(EngineDeterminism, EventsAreTheSameForAllThreadsCellsAndGrids) {
   const Stream expected = run(steps_, kGrids[0].config<float, 2>(CellKind::kPlane, make_serial_executor())).events;
+  std::size_t turn = 0;
   for (const int threads : kThreadCounts) {
     if (kSanitized && threads == 2) continue;
     const auto executor = make_executor(threads);
     for (std::size_t k = 0; k < kKinds.size(); ++k) {
       for (const GridChoice& grid : kGrids) {
         if (kSanitized && (k + static_cast<std::size_t>(threads)) % 3 != 0) continue;
-        if (GetParam().place == Place::kFarOut && !grid.bounded()) continue;
-        const Record other = run(steps_, grid.config<float, 2>(kKinds[k], executor));
+        const Reduction reduction = kReductions[turn++ % 2];
+        if (!grid.suits(GetParam().place, reduction)) continue;
+        const Record other = run(steps_, grid.config<float, 2>(kKinds[k], executor, reduction));
         EXPECT_EQ(first_difference(expected, other.events), -1)
             << threads << " threads, " << kKindNames[k] << ", " << grid.name;
       }
@@ -82,7 +84,7 @@ TEST_P(EngineDeterminism, EventsAreTheSameForAllThreadsCellsAndGrids) {
 
 TEST_P(EngineDeterminism, EventsAreTheSameForEveryOrderOfCalls) {
   const auto executor = make_executor(3);
-  const auto config = kGrids[1].config<float, 2>(CellKind::kBatch, executor);
+  const auto config = kGrids[1].config<float, 2>(CellKind::kRows, executor);
   const Stream expected = run(steps_, config).events;
   for (std::uint64_t seed = 0; seed < (kSanitized ? 4 : 12); ++seed) {
     std::vector<Ops> other;
@@ -95,7 +97,11 @@ TEST_P(EngineDeterminism, EventsAreTheSameForEveryOrderOfCalls) {
 TEST_P(EngineDeterminism, CountersAreTheSameForAllThreads) {
   for (std::size_t k = 0; k < kKinds.size(); ++k) {
     for (const std::size_t g : {std::size_t{0}, std::size_t{1}, std::size_t{3}}) {
-      const auto config = [&](int threads) { return kGrids[g].config<float, 2>(kKinds[k], make_executor(threads)); };
+      const Reduction reduction = kReductions[(k + g) % 2];
+      if (!kGrids[g].suits(GetParam().place, reduction)) continue;
+      const auto config = [&](int threads) {
+        return kGrids[g].config<float, 2>(kKinds[k], make_executor(threads), reduction);
+      };
       const Record expected = run(steps_, config(1));
       for (const int threads : {2, 3, 8}) {
         if (kSanitized && threads != 3) continue;
@@ -124,10 +130,17 @@ const SceneRegime kGiantScene{.name = "Giants", .place = Place::kGiants, .churn_
 const SceneRegime kFar{.name = "FarOut", .place = Place::kFarOut, .churn_percent = 5, .steps = 8};
 const SceneRegime kGrowth{
     .name = "Growth", .population = 5, .last_population = 400, .moving_percent = 30, .churn_percent = 5, .steps = 8};
+const SceneRegime kSizeRatios{.name = "Sizes",
+                              .place = Place::kSizes,
+                              .travel = Travel::kResize,
+                              .population = 400,
+                              .churn_percent = 5,
+                              .alternates = true,
+                              .steps = 10};
 const SceneRegime kDrifting{.name = "Drift", .travel = Travel::kDrift, .moving_percent = 100, .steps = 16};
 
 INSTANTIATE_TEST_SUITE_P(Scenes, EngineDeterminism,
-                         ::testing::Values(kEverything, kTies, kGiantScene, kFar, kGrowth, kDrifting),
+                         ::testing::Values(kEverything, kTies, kGiantScene, kFar, kGrowth, kSizeRatios, kDrifting),
                          [](const auto& scene) { return std::string(scene.param.name); });
 
 // With as many objects every stage of the step runs in several tasks, the merge of events included.

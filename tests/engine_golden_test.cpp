@@ -86,11 +86,16 @@ void check(const std::string& name, const std::string& text) {
     std::ofstream(path_of(name)) << replayed(text, config);
     GTEST_SKIP() << "wrote " << path_of(name);
   }
-  for (const CellKind kind : {CellKind::kBatch, CellKind::kSegmented, CellKind::kClassic, CellKind::kPlane}) {
-    for (const int population : {1, 48}) {
-      config.cell.kind = kind;
-      config.cell_population = population;
-      EXPECT_EQ(replayed(text, config), text) << "kind " << static_cast<int>(kind) << ", population " << population;
+  for (const CellKind kind :
+       {CellKind::kRows, CellKind::kBatch, CellKind::kSegmented, CellKind::kClassic, CellKind::kPlane}) {
+    for (const Reduction reduction : {Reduction::kSingleReporter, Reduction::kWitnessCounts}) {
+      for (const int population : {1, 48}) {
+        config.cell.kind = kind;
+        config.reduction = reduction;
+        config.cell_population = population;
+        EXPECT_EQ(replayed(text, config), text) << "kind " << static_cast<int>(kind) << ", population " << population
+                                                << ", reduction " << static_cast<int>(reduction);
+      }
     }
   }
 }

@@ -11,6 +11,7 @@ std::string play_script(const Regime& regime, std::size_t turn) {
     config.cell.kind = kind;
     config.cell_population = turn % 2 == 0 ? 2 : 20;
     config.threads = turn % 3 == 0 ? 3 : 1;
+    config.reduction = kReductions[turn / 2 % 2];
     const std::string wrong =
         play<Scalar, Dim>(config, CellScript<Scalar, Dim>(regime, turn), regime.drains, kCalls[turn % kCalls.size()]);
     if (!wrong.empty()) return "seed " + std::to_string(turn) + ": " + wrong;
@@ -42,9 +43,10 @@ std::string play_large(int threads) {
   const SceneRegime shrink{
       .name = "Shrink", .population = most, .last_population = 0, .moving_percent = 50, .churn_percent = 5, .steps = 6};
   for (const SceneRegime& regime : {grow, shrink}) {
-    for (const CellKind kind : {CellKind::kBatch, CellKind::kSegmented}) {
+    for (const CellKind kind : {CellKind::kRows, CellKind::kSegmented}) {
       for (const std::size_t g : {std::size_t{0}, std::size_t{3}}) {
-        const std::string wrong = play<float, 3>(kGrids[g].config<float, 3>(kind, executor),
+        const Reduction reduction = kReductions[(g + (kind == CellKind::kRows ? 0 : 1)) % 2];
+        const std::string wrong = play<float, 3>(kGrids[g].config<float, 3>(kind, executor, reduction),
                                                  SceneScript<float, 3>(regime, g), regime.steps, kCalls[2 + g / 3]);
         if (!wrong.empty()) return std::string(regime.name) + ", " + kGrids[g].name + ": " + wrong;
       }
