@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <iterator>
 #include <map>
 #include <string>
 #include <vector>
@@ -43,16 +45,29 @@ class VisitScript {
   std::map<ObjectId, Box<Scalar, Dim>> boxes_;
 };
 
-/// Plays a script of ops, of which every third drain is a transfer, and a script of visits to an empty cell. Says what
-/// went wrong first; nothing if all is well. `oracle` must be new, too, and knows the counters afterwards.
+template <class Scalar, int Dim>
+bool is_transfer(const BoxOp<Scalar, Dim>& op) {
+  return op.kind != OpKind::kUpdate;
+}
+
+/// Plays a script of ops, where in every third step the inserts and erases are a transfer, and a script of visits to an
+/// empty cell. Says what went wrong first; nothing if all is well. `oracle` must be new, too, and knows the counters
+/// afterwards.
 template <class Scalar, int Dim>
 std::string play_visits(SweepAndPrune<Scalar, Dim>& cell, CellOracle<Scalar, Dim>& oracle, const Regime& regime,
                         std::uint64_t seed) {
   OpScript<Scalar, Dim> script(regime, seed);
   VisitScript<Scalar, Dim> visitors(regime.palette, seed + 1);
   for (int step = 0; step < regime.drains; ++step) {
-    const Drain<Scalar, Dim> ops = script.next();
-    std::string wrong = step % 3 == 1 ? oracle.transfer(cell, ops) : oracle.drain(cell, ops);
+    Drain<Scalar, Dim> ops = script.next();
+    std::string wrong;
+    if (step % 3 == 1) {
+      Drain<Scalar, Dim> transfers;
+      std::copy_if(ops.begin(), ops.end(), std::back_inserter(transfers), is_transfer<Scalar, Dim>);
+      std::erase_if(ops, is_transfer<Scalar, Dim>);
+      wrong = oracle.transfer(cell, transfers);
+    }
+    if (wrong.empty()) wrong = oracle.drain(cell, ops);
     if (wrong.empty()) wrong = oracle.visit(cell, visitors.next());
     if (!wrong.empty()) {
       return std::string("regime ") + regime.name + ", population " + std::to_string(regime.population) + ", step " +

@@ -9,6 +9,7 @@
 
 #include "op_script.hpp"
 #include "sap_oracle.hpp"
+#include "visit_script.hpp"
 
 namespace sweepgrid {
 namespace {
@@ -37,6 +38,13 @@ int probe(const CellOptions& options) {
       std::cout << "kind " << static_cast<int>(options.kind) << ", regime " << regime.name << ", step " << step << '\n';
       return report(*cell, finding);
     }
+  }
+  for (const oracle::Regime& regime : oracle::kRegimes) {
+    if (regime.population > 40) continue;
+    oracle::CellOracle<float, 2> oracle;
+    const auto cell = make_cell<float, 2>(options);
+    const std::string finding = oracle::play_visits(*cell, oracle, regime, 1);
+    if (!finding.empty()) return report(*cell, finding);
   }
   return 0;
 }

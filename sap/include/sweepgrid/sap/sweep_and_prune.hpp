@@ -47,8 +47,8 @@ class SweepAndPrune {
   /// Precondition: no visitor is a resident.
   virtual void visit(std::span<const Visit> visits, std::vector<OverlapDelta>& deltas, SapCounters& counters) const;
 
-  /// Applies `ops` as drain() does, with the same precondition and the same refusals, but reports no deltas: for
-  /// objects whose pairs are known elsewhere already.
+  /// Inserts and erases as drain() does, with the same refusals, but reports no deltas: for objects whose pairs are
+  /// known elsewhere already. Precondition: that of drain(), and no op is an update.
   virtual void transfer(std::span<const Op> ops, SapCounters& counters);
 
   /// Fetches what the next drain() will touch into the cache, while another cell is drained. Does nothing else.
