@@ -162,6 +162,7 @@ class EngineCore {
     std::uint32_t end = 0;
   } relocation_;
 
+  typename GridFit<Scalar, Dim>::Result fitted_;  // with witness counts: where the grid is
   bool gridded_ = false;
   bool dense_ = false;  // this step: most objects have changed
   std::size_t objects_at_step_ = 0;  // how many there were when the latest step began

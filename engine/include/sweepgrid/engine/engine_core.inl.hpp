@@ -329,7 +329,7 @@ void EngineCore<Scalar, Dim>::plan_drain(std::vector<std::uint64_t>& costs) {
     }
   }
   tasks_.resize(used);
-  regrid_.observe(met, ops);
+  if (!relocation_.wanted) regrid_.observe(met, ops);  // half a scene in new cells says little
 }
 
 template <class Scalar, int Dim>

@@ -55,9 +55,11 @@ template <class Scalar, int Dim>
 void EngineCore<Scalar, Dim>::follow_with_counts() {
   if (gridded_ && !regrid_.outgrown(objects_.size()) && !regrid_.crowded()) return;
   const auto result = fit(sample(GridFit<Scalar, Dim>::sample_size(objects_.size())));
-  if (gridded_ && !regrid_.outgrown(objects_.size()) && result.cell_size > 0.75 * levels_.cell_size()) {
+  if (gridded_ && !regrid_.outgrown(objects_.size()) && result.cell_size > 0.75 * levels_.cell_size() &&
+      result.share_within(fitted_) > 0.8) {
     return regrid_.resign();
   }
+  fitted_ = result;
   levels_.start_single(GridFit<Scalar, Dim>::bounded(result, kMaxCells), config_.cell, grid_shards());
   for (ObjectId object = 0; object < objects_.bound(); ++object) objects_.record(object).grid = levels_.finest();
   regrid_.fitted(result.met, objects_.size());
@@ -89,13 +91,12 @@ void EngineCore<Scalar, Dim>::follow_with_levels() {
         relocation_.wanted = true;
       }
     } else if (regrid_.crowded() || regrid_.sparse()) {
-      const auto boxes = sample(256);
-      const double size =
-          std::max(levels_.cell_size() * regrid_.factor(Dim), grid_fit::smallest_cell<Scalar, Dim>(boxes));
-      const double change = size / levels_.cell_size();
+      const auto boxes = sample(GridFit<Scalar, Dim>::sample_size(objects));
+      const auto result = fit(boxes);
+      const double change = result.cell_size / levels_.cell_size();
       if (change > 1.25 || change < 0.8) {
-        start_family(size, levels_.origin(), boxes);
-        regrid_.refitted();
+        start_family(result.cell_size, result.lower, boxes);
+        regrid_.fitted(result.met, objects);
         relocation_.wanted = true;
       } else {
         regrid_.resign();

@@ -31,6 +31,17 @@ struct GridFit {
     double met = 1;  // residents that an op is expected to meet in a cell
     std::array<double, Dim> lower{};
     std::array<double, Dim> upper{};
+
+    /// Part of the space between the corners that lies between those of another result.
+    [[nodiscard]] double share_within(const Result& other) const {
+      double share = 1;
+      for (int axis = 0; axis < Dim; ++axis) {
+        const double common = std::min(upper[axis], other.upper[axis]) - std::max(lower[axis], other.lower[axis]);
+        const double edge = upper[axis] - lower[axis];
+        share *= common < 0 ? 0 : edge > 0 ? common / edge : 1;
+      }
+      return share;
+    }
   };
 
   /// Boxes that suffice as a sample of so many objects; more only cost time.
