@@ -275,10 +275,6 @@ TEST(EngineConfig, RefusesWhatIsOutOfRangeAndNamesIt) {
   for (const double size : {0.0, -0.0, -1.0, nan, infinity, -infinity}) {
     EXPECT_TRUE(has(refused([&](Config2& c) { c.cell_size = size; }), "cell_size"));
   }
-  for (const Box2& box :
-       {Box2({0, 0}, {1, kNan}), Box2({0, 0}, {1, kInfinity}), Box2({-kInfinity, 0}, {1, 1}), Box2({0, 2}, {1, 1})}) {
-    EXPECT_TRUE(has(refused([&](Config2& c) { c.bounds = box; }), "bounds"));
-  }
   EXPECT_TRUE(has(refused([](Config2& c) { c.threads = -1; }), "threads"));
   EXPECT_TRUE(has(refused([](Config2& c) {
                     c.cell.kind = CellKind::kSegmented;
@@ -288,11 +284,22 @@ TEST(EngineConfig, RefusesWhatIsOutOfRangeAndNamesIt) {
   EXPECT_TRUE(has(refused([](Config2& c) { c.cell.kind = static_cast<CellKind>(17); }), "kind"));
 }
 
-TEST(EngineConfig, RefusesAGridWithMoreCellsThanItCanHave) {
-  Config2 config = serial();
-  config.bounds = Box2({0, 0}, {1, 1});
-  config.cell_size = 1e-9;
-  EXPECT_TRUE(has(refusal([&] { Engine2 engine(config); }), "cell_size"));
+TEST(EngineConfig, AGivenCellSizeIsKeptButForBoundedGridsOfTooManyCells) {
+  for (const Reduction reduction : {Reduction::kSingleReporter, Reduction::kWitnessCounts}) {
+    Config2 config = serial();
+    config.cell_size = 1e-9;
+    config.reduction = reduction;
+    Engine2 engine(config);
+    for (std::uint64_t key = 0; key < 100; ++key) engine.insert(key, square(static_cast<float>(key), 0, 0));
+    EXPECT_TRUE(engine.step().begins.empty());
+    engine.validate();
+    if (reduction == Reduction::kSingleReporter) {
+      EXPECT_EQ(engine.stats().cell_size, 1e-9);
+    } else {
+      EXPECT_GE(engine.stats().cell_size, 100.0 / (1 << 24));
+      EXPECT_LT(engine.stats().cell_size, 300.0 / (1 << 24));
+    }
+  }
 }
 
 TEST(EngineConfig, AnExecutorMayServeManyEngines) {
@@ -521,30 +528,31 @@ TEST(EngineKeys, MayBeBoxedByEigen) {
 
 TEST(EngineStats, CountWhatHappened) {
   Config2 config = serial();
-  config.bounds = Box2({0, 0}, {40, 40});
+  config.cell.kind = CellKind::kBatch;
   config.cell_size = 10;
   Engine2 engine(config);
-  engine.insert(1, square(5, 5, 2));
-  engine.insert(2, square(6, 6, 2));
-  engine.insert(3, Box2({1, 35}, {39, 36}));
+  engine.insert(1, square(5, 5, 0));  // points, so that each is in one cell, wherever the grid begins
+  engine.insert(2, square(5, 5, 0));
+  engine.insert(3, square(105, 5, 0));
   engine.step();
   Stats stats = engine.stats();
   EXPECT_EQ(stats.steps, 1u);
   EXPECT_EQ(stats.objects, 3u);
   EXPECT_EQ(stats.pairs, 1u);
-  EXPECT_EQ(stats.cells, 16u);
+  EXPECT_EQ(stats.grids, 1u);
+  EXPECT_EQ(stats.cells, 2u);
   EXPECT_EQ(stats.cell_size, 10);
-  EXPECT_EQ(stats.occupied_cells, 5u);
   EXPECT_EQ(stats.step.inserts, 3u);
-  EXPECT_EQ(stats.step.cell_ops, 6u);
-  EXPECT_EQ(stats.step.cells_drained, 5u);
+  EXPECT_EQ(stats.step.cell_ops, 3u);
+  EXPECT_EQ(stats.step.cells_drained, 2u);
   EXPECT_EQ(stats.step.begins, 1u);
   EXPECT_EQ(stats.step.cells.deltas, 1u);
   EXPECT_GT(stats.bytes_objects, 0u);
   EXPECT_GT(stats.bytes_cells, 0u);
+  EXPECT_EQ(stats.bytes_witnesses, 0u);
 
-  engine.update(std::uint64_t{1}, square(15, 5, 2));  // migrates: one erase, one insert
-  engine.update(std::uint64_t{2}, square(6, 6, 2));   // rests
+  engine.update(std::uint64_t{1}, square(35, 5, 0));  // migrates: one erase, one insert
+  engine.update(std::uint64_t{2}, square(5, 5, 0));   // rests
   engine.erase(std::uint64_t{3});
   engine.step();
   stats = engine.stats();
@@ -553,9 +561,9 @@ TEST(EngineStats, CountWhatHappened) {
   EXPECT_EQ(stats.step.updates, 1u);
   EXPECT_EQ(stats.step.migrations, 1u);
   EXPECT_EQ(stats.step.erases, 1u);
-  EXPECT_EQ(stats.step.cell_ops, 2u + 4u);
+  EXPECT_EQ(stats.step.cell_ops, 2u + 1u);
   EXPECT_EQ(stats.step.ends, 1u);
-  EXPECT_EQ(stats.occupied_cells, 2u);
+  EXPECT_EQ(stats.cells, 2u);
   EXPECT_EQ(stats.total.inserts, 3u);
   EXPECT_EQ(stats.total.begins, 1u);
   EXPECT_EQ(stats.total.ends, 1u);
@@ -566,20 +574,57 @@ TEST(EngineStats, CountWhatHappened) {
   EXPECT_EQ(engine.stats().steps, 3u);
 }
 
-TEST(EngineStats, AFollowingSceneMakesTheGridAnew) {
-  Engine2 engine(serial());
-  for (std::uint64_t key = 0; key < 10; ++key) engine.insert(key, square(static_cast<float>(key), 0));
+TEST(EngineStats, GridsAreMadeForSizesThatExistAndGoWithThem) {
+  Config2 config = serial();
+  config.cell_size = 1;
+  Engine2 engine(config);
+  for (std::uint64_t key = 0; key < 10; ++key) engine.insert(key, square(static_cast<float>(3 * key), 0));
   engine.step();
-  EXPECT_EQ(engine.stats().step.regrids, 1u);
-  const std::size_t cells = engine.stats().cells;
-  for (std::uint64_t key = 10; key < 5000; ++key) {
-    engine.insert(key, square(static_cast<float>(key % 70) * 3, static_cast<float>(key / 70) * 3));
+  EXPECT_EQ(engine.stats().grids, 1u);
+  const Handle wide = engine.insert(10, square(0, 0, 30));
+  EXPECT_EQ(engine.step().begins.size(), 10u);
+  EXPECT_EQ(engine.stats().grids, 2u);
+  const Handle endless = engine.insert(11, Box2({-kInfinity, 0}, {kInfinity, 0}));
+  EXPECT_EQ(engine.step().begins.size(), 11u);
+  EXPECT_EQ(engine.stats().grids, 3u);
+  engine.erase(wide);
+  engine.erase(endless);
+  EXPECT_EQ(engine.step().ends.size(), 21u);
+  EXPECT_EQ(engine.stats().grids, 1u);
+  EXPECT_EQ(engine.stats().cell_size, 1);
+}
+
+TEST(EngineStats, OnlyWitnessCountsKeepATableOfPairs) {
+  for (const Reduction reduction : {Reduction::kSingleReporter, Reduction::kWitnessCounts}) {
+    Config2 config = serial();
+    config.reduction = reduction;
+    Engine2 engine(config);
+    for (std::uint64_t key = 0; key < 50; ++key) engine.insert(key, square(0, 0));
+    engine.step();
+    EXPECT_EQ(engine.stats().pairs, 50u * 49 / 2);
+    EXPECT_EQ(engine.stats().bytes_witnesses > 0, reduction == Reduction::kWitnessCounts);
+    EXPECT_EQ(engine.pairs().size(), 50u * 49 / 2);
   }
-  engine.step();
-  EXPECT_EQ(engine.stats().step.regrids, 1u);
-  EXPECT_GT(engine.stats().cells, cells);
-  engine.step();
-  EXPECT_EQ(engine.stats().step.regrids, 0u);
+}
+
+TEST(EngineStats, AGrowingSceneMakesTheGridAnewOnce) {
+  for (const Reduction reduction : {Reduction::kSingleReporter, Reduction::kWitnessCounts}) {
+    Config2 config = serial();
+    config.reduction = reduction;
+    Engine2 engine(config);
+    for (std::uint64_t key = 0; key < 10; ++key) engine.insert(key, square(static_cast<float>(20 * key), 0));
+    engine.step();
+    EXPECT_EQ(engine.stats().step.regrids, 1u);
+    const std::size_t cells = engine.stats().cells;
+    for (std::uint64_t key = 10; key < 5000; ++key) {
+      engine.insert(key, square(static_cast<float>(key % 70) * 3, static_cast<float>(key / 70) * 3));
+    }
+    engine.step();
+    EXPECT_EQ(engine.stats().step.regrids, 1u);
+    EXPECT_GT(engine.stats().cells, 2 * cells);
+    engine.step();
+    EXPECT_EQ(engine.stats().step.regrids, 0u);
+  }
 }
 
 /// 2000 objects in a square of that edge, centred at `centre`.
@@ -598,32 +643,44 @@ void queue_square(Engine2& engine, float centre, float edge) {
 }
 
 TEST(EngineStats, ASceneThatCollapsesGetsSmallerCells) {
-  Engine2 engine(serial());
-  float edge = 1024;
-  queue_square(engine, 0, edge);
-  engine.step();
-  const double size = engine.stats().cell_size;
-  for (; edge > 1; edge /= 2) {
+  for (const Reduction reduction : {Reduction::kSingleReporter, Reduction::kWitnessCounts}) {
+    Config2 config = serial();
+    config.reduction = reduction;
+    Engine2 engine(config);
+    float edge = 1024;
     queue_square(engine, 0, edge);
     engine.step();
+    const double size = engine.stats().cell_size;
+    for (; edge > 1; edge /= 2) {
+      queue_square(engine, 0, edge);
+      engine.step();
+    }
+    for (int step = 0; step < 8; ++step) {  // if it still follows
+      queue_square(engine, 0.01F * static_cast<float>(step % 2), edge);
+      engine.step();
+    }
+    EXPECT_LT(engine.stats().cell_size, size / 512);
+    EXPECT_GT(engine.stats().cell_size, size / 2048);
+    EXPECT_LT(engine.stats().total.regrids, 8u);
   }
-  EXPECT_LT(engine.stats().cell_size, size / 64);
-  EXPECT_LT(engine.stats().total.regrids, 8u);
 }
 
-TEST(EngineStats, TheGridFollowsASceneThatLeavesIt) {
-  Engine2 engine(serial());
-  queue_square(engine, 0, 100);
-  engine.step();
-  const std::size_t occupied = engine.stats().occupied_cells;
-  queue_square(engine, 5000, 100);
-  engine.step();
-  for (int step = 0; step < 2; ++step) {
-    queue_square(engine, 5000.0F + static_cast<float>(step), 100);
+TEST(EngineStats, ASceneThatLeavesItsPlaceKeepsItsCells) {
+  Config2 config = serial();
+  for (const Reduction reduction : {Reduction::kSingleReporter, Reduction::kWitnessCounts}) {
+    config.reduction = reduction;
+    Engine2 engine(config);
+    queue_square(engine, 0, 100);
     engine.step();
+    const std::size_t cells = engine.stats().cells;
+    for (int step = 0; step < 3; ++step) {
+      queue_square(engine, 5000.0F + static_cast<float>(step), 100);
+      engine.step();
+    }
+    EXPECT_GT(engine.stats().cells, cells / 2);
+    // A grid without bounds serves everywhere; one with bounds is made anew where the scene is now.
+    EXPECT_EQ(engine.stats().total.regrids, reduction == Reduction::kSingleReporter ? 1u : 2u);
   }
-  EXPECT_GT(engine.stats().occupied_cells, occupied / 2);
-  EXPECT_EQ(engine.stats().total.regrids, 2u);
 }
 
 TEST(EngineStats, ASceneThatStaysKeepsItsGrid) {

@@ -26,8 +26,7 @@ std::vector<Pair<Key>> sorted_by(const std::vector<Pair<Key>>& pairs, std::size_
   std::vector<Pair<Key>> out(5);
   const std::size_t used = order.cut(ranges, out);
   EXPECT_LE(used, ranges);
-  EXPECT_EQ(used == 0, pairs.empty());
-  EXPECT_EQ(out.size(), pairs.size());
+  EXPECT_EQ(used == 0, pairs.empty() || shards == 1);
   for (std::size_t range = used; range > 0; --range) order.merge_range(range - 1, out);
   return out;
 }
@@ -37,7 +36,7 @@ std::vector<Pair<int>> random_pairs(int count, int keys) {
   oracle::Random random(static_cast<std::uint64_t>(count));
   std::vector<Pair<int>> pairs;
   for (int i = 0; i < count; ++i) {
-    pairs.push_back(EventOrder<int, Order>::pair(random.below(keys), keys + random.below(keys)));
+    pairs.push_back(EventOrder<int, Order>::pair(random.below(keys), keys + random.below(1 << 30)));
   }
   return pairs;
 }
@@ -68,6 +67,19 @@ TEST(EventOrder, IsTheSameForAnyNumberOfShardsAndRanges) {
 TEST(EventOrder, CutsWhereOneKeyIsInMostPairs) {
   // A ground plane: one first key, so that cuts must fall between pairs and not between keys.
   for (const int keys : {1, 2, 3}) expect_same_for_any_shards_and_ranges<std::less<int>>(5000, keys);
+}
+
+TEST(EventOrder, DropsDoublesOfAShard) {
+  const std::vector<Pair<int>> pairs{{1, 2}, {1, 3}, {2, 3}, {2, 4}};
+  for (const std::size_t shards : {1, 2}) {
+    EventOrder<int, std::less<int>> order;
+    order.reset(shards);
+    for (const std::size_t copy : {3, 0, 2, 0, 1, 3}) order.shard(copy % shards).push_back(pairs[copy]);
+    for (std::size_t shard = 0; shard < shards; ++shard) order.sort_shard(shard);
+    std::vector<Pair<int>> out;
+    for (std::size_t range = order.cut(2, out); range > 0; --range) order.merge_range(range - 1, out);
+    EXPECT_EQ(out, pairs);
+  }
 }
 
 TEST(EventOrder, FollowsTheOrderOfTheClient) {
