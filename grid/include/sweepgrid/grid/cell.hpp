@@ -54,7 +54,7 @@ class Cell {
     ++counters.kinds_changed;
   }
 
-  void prefetch() const { has_rows() ? rows_.prefetch() : other_->cell->prefetch(); }
+  [[gnu::always_inline]] void prefetch() const { has_rows() ? rows_.prefetch() : other_->cell->prefetch(); }
 
   [[nodiscard]] std::size_t bytes() const {
     return rows_.bytes() + (other_ ? sizeof(Other) + (other_->cell ? other_->cell->bytes() : 0) : 0);

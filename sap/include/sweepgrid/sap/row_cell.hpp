@@ -49,7 +49,7 @@ class RowCell final : public SweepAndPrune<Scalar, Dim> {
   /// The residents, by place.
   [[nodiscard]] std::span<const ObjectId> ids() const { return {rows_.ids(), rows_.size()}; }
 
-  void prefetch() const override { sweepgrid::prefetch(rows_.data(), rows_.bytes()); }
+  [[gnu::always_inline]] void prefetch() const override { sweepgrid::prefetch(rows_.data(), rows_.bytes()); }
   [[nodiscard]] std::size_t size() const override { return rows_.size(); }
   [[nodiscard]] std::size_t bytes() const override { return rows_.bytes(); }
   void append_residents(std::vector<Resident>& residents) const override;
