@@ -217,16 +217,10 @@ void Grid<Scalar, Dim>::drain(std::size_t index, std::span<const ActiveCell> cel
     for (std::uint32_t i = 0; i < active.call_count; ++i) boxes.prefetch(shard.calls[active.first_call + i].object);
     sweepgrid::prefetch(&shard.cells[active.cell], sizeof(CellType));
   };
-  const auto announce_residents = [&](const ActiveCell& active) {
-    const CellType& cell = shard.cells[active.cell];
-    if (!cell.has_rows()) return;
-    for (const ObjectId object : cell.row_ids()) boxes.prefetch(object);
-  };
   for (std::size_t i = 0; i < std::min(kAhead, cells.size()); ++i) announce(cells[i]);
   for (std::size_t i = 0; i < cells.size(); ++i) {
     if (i + kAhead < cells.size()) announce(cells[i + kAhead]);
     if (i + 3 < cells.size()) shard.cells[cells[i + 3].cell].prefetch();
-    if (dense_ && i + 1 < cells.size()) announce_residents(cells[i + 1]);
     drain_cell(shard, cells[i], boxes, out);
   }
 }
