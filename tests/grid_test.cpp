@@ -1,410 +1,412 @@
+// The cells that exist, the calls on their way to them, and what one grid makes of a step.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <cstdint>
 #include <limits>
-#include <map>
-#include <stdexcept>
+#include <optional>
+#include <set>
+#include <string>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
+#include <sweepgrid/grid/cell_directory.hpp>
 #include <sweepgrid/grid/grid.hpp>
-#include <sweepgrid/grid/grid_fit.hpp>
 #include <sweepgrid/grid/op_queues.hpp>
+#include <sweepgrid/sap/cell_kind.inl.hpp>
 
+#include "grid_client.hpp"
 #include "op_script.hpp"
 
 namespace sweepgrid {
 namespace {
 
-using Fit2 = GridFit<double, 2>;
 using Box2 = Box<double, 2>;
 using Spec2 = GridSpec<double, 2>;
-using Range2 = CellRange<2>;
+using Grid2 = Grid<double, 2>;
+using Boxes2 = oracle::ClientBoxes<double, 2>;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-Range2 range(std::uint16_t x0, std::uint16_t y0, std::uint16_t x1, std::uint16_t y1) { return {{x0, y0}, {x1, y1}}; }
+// ---- CellDirectory
 
-bool share_a_cell(const Range2& a, const Range2& b) {
-  for (std::size_t axis = 0; axis < 2; ++axis) {
-    if (a.first[axis] > b.last[axis] || b.first[axis] > a.last[axis]) return false;
-  }
-  return true;
-}
-
-// ---- CellRange
-
-TEST(CellRange, CountsAndContainsBothCorners) {
-  const Range2 block = range(2, 3, 4, 3);
-  EXPECT_EQ(block.count(), 3u);
-  EXPECT_TRUE(block.contains({2, 3}));
-  EXPECT_TRUE(block.contains({4, 3}));
-  EXPECT_FALSE(block.contains({1, 3}));
-  EXPECT_FALSE(block.contains({5, 3}));
-  EXPECT_FALSE(block.contains({3, 2}));
-  EXPECT_FALSE(block.contains({3, 4}));
-}
-
-TEST(CellRange, CountDoesNotOverflow) {
-  const CellRange<3> all{{0, 0, 0}, {65535, 65535, 65535}};
-  EXPECT_EQ(all.count(), std::uint64_t{1} << 48);
-}
-
-// ---- GridSpec
-
-TEST(GridSpec, CoversTheBoundsWithCubicCells) {
-  const Spec2 spec({0, 0}, {100, 41}, 10);
-  EXPECT_EQ(spec.counts(), (Spec2::Counts{10, 5}));
-  EXPECT_EQ(spec.cell_count(), 50u);
-  EXPECT_EQ(spec.range(Box2({0, 0}, {9.5, 9.5})), range(0, 0, 0, 0));
-  EXPECT_EQ(spec.range(Box2({5, 5}, {25, 12})), range(0, 0, 2, 1));
-}
-
-TEST(GridSpec, TouchesBothCellsAtAFace) {
-  const Spec2 spec({0, 0}, {100, 100}, 10);
-  EXPECT_EQ(spec.range(Box2({10, 20}, {10, 30})), range(1, 2, 1, 3));
-}
-
-TEST(GridSpec, BorderCellsReachToInfinity) {
-  const Spec2 spec({0, 0}, {100, 100}, 10);
-  EXPECT_EQ(spec.range(Box2({-1e30, -5}, {-1e29, -4})), range(0, 0, 0, 0));
-  EXPECT_EQ(spec.range(Box2({1e30, 100}, {1e30, 1e300})), range(9, 9, 9, 9));
-  EXPECT_EQ(spec.range(Box2({-kInfinity, 15}, {kInfinity, 15})), range(0, 1, 9, 1));
-  EXPECT_EQ(spec.range(Box2({kInfinity, -kInfinity}, {kInfinity, -kInfinity})), range(9, 0, 9, 0));
-}
-
-TEST(GridSpec, OneCellTakesEverything) {
-  const Spec2 spec;
-  EXPECT_EQ(spec.cell_count(), 1u);
-  EXPECT_EQ(spec.range(Box2({-kInfinity, 1e300}, {kInfinity, kInfinity})), range(0, 0, 0, 0));
-  EXPECT_FALSE(spec.outside(Box2({-1e300, -1e300}, {-1e300, -1e300})));
-}
-
-TEST(GridSpec, OutsideMeansWhollyBeyondTheBounds) {
-  const Spec2 spec({0, 0}, {100, 100}, 10);
-  EXPECT_FALSE(spec.outside(Box2({-5, 50}, {5, 55})));
-  EXPECT_FALSE(spec.outside(Box2({-kInfinity, 50}, {kInfinity, 55})));
-  EXPECT_TRUE(spec.outside(Box2({-5, 50}, {-1, 55})));
-  EXPECT_TRUE(spec.outside(Box2({50, 101}, {50, 102})));
-}
-
-TEST(GridSpec, IndexIsRowMajorWithTheLastAxisSlowest) {
-  const Spec2 spec({0, 0}, {100, 40}, 10);
-  EXPECT_EQ(spec.index({0, 0}), 0u);
-  EXPECT_EQ(spec.index({9, 0}), 9u);
-  EXPECT_EQ(spec.index({0, 1}), 10u);
-  EXPECT_EQ(spec.index({9, 3}), 39u);
-}
-
-TEST(GridSpec, RefusesMoreCellsThanItCanNumber) {
-  EXPECT_THROW((Spec2({0, 0}, {1, 1}, 1e-9)), std::invalid_argument);
-  EXPECT_THROW((Spec2({0, 0}, {70'000, 0}, 1)), std::invalid_argument);
-  EXPECT_THROW((Spec2({0, 0}, {5000, 5000}, 1)), std::invalid_argument);
-  EXPECT_THROW((Spec2({-1e308, 0}, {1e308, 0}, 1)), std::invalid_argument);
-  EXPECT_NO_THROW((Spec2({0, 0}, {65'536, 0}, 1)));
-  EXPECT_NO_THROW((Spec2({0, 0}, {4096, 4096}, 1)));
-}
-
-// What the witness counts rest on: in whatever way coordinates are rounded, boxes that overlap meet in a cell.
-template <class Scalar>
-void expect_overlapping_boxes_share_a_cell(oracle::Palette palette, const std::array<double, 2>& lower, double size) {
-  const GridSpec<Scalar, 2> spec(lower, {lower[0] + 100 * size, lower[1] + 50 * size}, size);
-  const std::vector<Scalar> values = oracle::coordinates<Scalar>(palette);
-  oracle::Random random(11);
-  std::vector<Box<Scalar, 2>> boxes(150);
-  for (auto& box : boxes) {
-    for (std::size_t axis = 0; axis < 2; ++axis) {
-      const auto pick = [&] { return values[static_cast<std::size_t>(random.below(static_cast<int>(values.size())))]; };
-      box.min[axis] = pick();
-      box.max[axis] = pick();
-      if (box.min[axis] > box.max[axis]) std::swap(box.min[axis], box.max[axis]);
-    }
-  }
-  for (const auto& a : boxes) {
-    const Range2 range_a = spec.range(a);
-    for (std::size_t axis = 0; axis < 2; ++axis) {
-      ASSERT_LE(range_a.first[axis], range_a.last[axis]);
-      ASSERT_LT(range_a.last[axis], spec.counts()[axis]);
-    }
-    for (const auto& b : boxes) {
-      if (a.overlaps(b)) {
-        ASSERT_TRUE(share_a_cell(range_a, spec.range(b)));
-      }
-    }
-  }
-}
-
-TEST(GridSpec, OverlappingBoxesShareACellWhateverTheRounding) {
-  for (const auto palette :
-       {oracle::Palette::kFine, oracle::Palette::kLattice, oracle::Palette::kExtremes, oracle::Palette::kFar}) {
-    for (const double size : {1e-320, 1e-40, 1e-3, 0.37, 1.0, 3.0, 1e3, 1e22, 1e28, 1e36}) {
-      expect_overlapping_boxes_share_a_cell<float>(palette, {-50 * size, 0}, size);
-      expect_overlapping_boxes_share_a_cell<double>(palette, {-50 * size, 0}, size);
-      expect_overlapping_boxes_share_a_cell<float>(palette, {1e30, -1e30}, std::max(size, 1e18));
-      if (size > 1e-3) expect_overlapping_boxes_share_a_cell<std::int64_t>(palette, {-50 * size, 0}, size);
-    }
-  }
-}
-
-// ---- GridFit
-
-std::vector<Box2> uniform_boxes(int count, double space, double width, std::uint64_t seed = 1) {
+/// Random cells of `side`^2 come and go: few blocks and many, growing and shrinking.
+void expect_directory_is_a_map(std::uint32_t side, std::uint64_t seed) {
+  CellDirectory<2> directory;
+  std::unordered_map<std::uint64_t, std::uint32_t> map;
   oracle::Random random(seed);
-  std::vector<Box2> boxes;
-  for (int i = 0; i < count; ++i) {
-    const double x = space * random.below(1 << 20) / (1 << 20);
-    const double y = space * random.below(1 << 20) / (1 << 20);
-    boxes.push_back(Box2({x, y}, {x + width, y + width}));
-  }
-  return boxes;
-}
-
-/// Objects that the average object shares its cell with, itself included; by centre.
-double crowding(const Spec2& spec, const std::vector<Box2>& boxes) {
-  std::map<CellIndex, double> cells;
-  for (const Box2& box : boxes) {
-    const Box2::Point centre{(box.min[0] + box.max[0]) / 2, (box.min[1] + box.max[1]) / 2};
-    cells[spec.index(spec.range(Box2(centre, centre)).first)] += 1;
-  }
-  double sum = 0;
-  for (const auto& [cell, objects] : cells) sum += objects * objects;
-  return sum / static_cast<double>(boxes.size());
-}
-
-TEST(GridFit, AimsAtTheWantedPopulation) {
-  const auto boxes = uniform_boxes(8000, 1000, 0.1);
-  for (const int population : {5, 48, 300}) {
-    const Spec2 spec = Fit2{population, {}, {}}.derive(boxes, boxes.size());
-    EXPECT_GT(crowding(spec, boxes), population * 0.5) << population;
-    EXPECT_LT(crowding(spec, boxes), population * 2.0 + 2) << population;
-  }
-}
-
-TEST(GridFit, HasNoMoreCellsThanObjectsBeyondAFloor) {
-  const auto boxes = uniform_boxes(2000, 1000, 1e-6);
-  const Spec2 spec = Fit2{1, {}, {}}.derive(boxes, boxes.size());
-  EXPECT_LE(spec.cell_count(), 4096u + 2000u);
-}
-
-TEST(GridFit, CellsAreWiderThanMostBoxes) {
-  const auto boxes = uniform_boxes(5000, 1000, 120);
-  const Spec2 spec = Fit2{1, {}, {}}.derive(boxes, boxes.size());
-  EXPECT_GE(spec.cell_size(), 120);
-}
-
-TEST(GridFit, AFewObjectsFarAwayDoNotStretchTheGrid) {
-  auto boxes = uniform_boxes(3000, 100, 0.5);
-  const double near = Fit2{}.derive(boxes, boxes.size()).cell_size();
-  for (int i = 0; i < 5; ++i) boxes[static_cast<std::size_t>(600 * i)] = Box2({1e12, -1e12}, {1e12, 1e12});
-  EXPECT_LT(Fit2{}.derive(boxes, boxes.size()).cell_size(), 2 * near);
-}
-
-TEST(GridFit, InfiniteBoxesDoNotCount) {
-  auto boxes = uniform_boxes(1000, 100, 0.5);
-  const double finite = Fit2{}.derive(boxes, boxes.size()).cell_size();
-  boxes.push_back(Box2({-kInfinity, -1}, {kInfinity, 0}));
-  boxes.push_back(Box2({-kInfinity, -kInfinity}, {kInfinity, 0}));
-  EXPECT_NEAR(Fit2{}.derive(boxes, boxes.size()).cell_size(), finite, 0.1 * finite);
-}
-
-TEST(GridFit, NothingToGoByMakesOneCell) {
-  EXPECT_EQ(Fit2{}.derive({}, 0).cell_count(), 1u);
-  EXPECT_EQ(Fit2{}.derive({Box2({3, 3}, {3, 3})}, 1).cell_count(), 1u);
-  EXPECT_EQ(Fit2{}.derive({Box2({-kInfinity, 0}, {kInfinity, 1})}, 1).cell_count(), 1u);
-  EXPECT_EQ(Fit2{}.derive({Box2({-1e308, 0}, {-1e308, 1}), Box2({1.7e308, 0}, {1.7e308, 1})}, 2).cell_count(), 1u);
-}
-
-TEST(GridFit, DerivesAGridAtEveryScale) {
-  for (const double unit : {5e-324, 1e-310, 1e-300, 1e-200, 1e-160, 1e-100, 1.0, 1e100, 1e160, 1e200, 1e300}) {
-    for (const double width : {0.0, 1.0}) {
-      std::vector<Box2> boxes;
-      for (int i = 0; i < 10; ++i) boxes.push_back(Box2({i * unit, 0}, {(i + width) * unit, unit}));
-      const Spec2 spec = Fit2{1, {}, {}}.derive(boxes, boxes.size());
-      EXPECT_GE(spec.cell_count(), unit < 1e-300 ? 1u : 2u) << unit;
-      EXPECT_LE(spec.cell_count(), 4106u) << unit;
+  for (std::uint32_t call = 0; call < 20'000; ++call) {
+    const auto axis = [&] { return static_cast<std::uint32_t>(random.below(static_cast<int>(side))) * 5; };
+    const std::uint64_t code = CellCode<2>::of({axis(), axis()});
+    const auto known = map.find(code);
+    ASSERT_EQ(directory.find(code), known == map.end() ? CellDirectory<2>::kAbsent : known->second);
+    const bool growing = call / 4000 % 2 == 0;
+    if (known == map.end() && random.percent(growing ? 90 : 10)) {
+      auto& place = directory.place(code);
+      ASSERT_EQ(place, CellDirectory<2>::kAbsent);
+      place = call;
+      directory.added(code);
+      map.emplace(code, call);
+    } else if (known != map.end() && random.percent(growing ? 10 : 90)) {
+      directory.erase(code);
+      map.erase(known);
     }
+    ASSERT_EQ(directory.size(), map.size());
+    const auto* block = directory.find_block(CellCode<2>::block(code));
+    ASSERT_EQ(block == nullptr ? CellDirectory<2>::kAbsent : block[CellCode<2>::inner(code)], directory.find(code));
+    if (call % 1000 != 0) continue;
+    std::set<std::uint64_t> visited;
+    directory.for_each([&](std::uint64_t cell) { ASSERT_TRUE(map.contains(cell) && visited.insert(cell).second); });
+    ASSERT_EQ(visited.size(), map.size());
   }
 }
 
-TEST(GridFit, KeepsAGivenSizeUnlessTheGridWereTooLarge) {
-  const auto boxes = uniform_boxes(100, 100, 1);
-  Fit2 fit;
-  fit.cell_size = 7;
-  EXPECT_EQ(fit.derive(boxes, 100).cell_size(), 7);
-  fit.cell_size = 1e-300;
-  const Spec2 spec = fit.derive(boxes, 100);
-  EXPECT_LE(spec.cell_count(), Spec2::kMaxCells);
-  EXPECT_GT(spec.cell_count(), 1000u);
+TEST(CellDirectory, IsAMapFromCodesToIds) {
+  for (const std::uint32_t side : {2U, 6U, 20U, 60U, 400'000U}) expect_directory_is_a_map(side, side);
 }
 
-TEST(GridFit, KeepsGivenBounds) {
-  Fit2 fit;
-  fit.bounds = Box2({-1000, 0}, {1000, 500});
-  const Spec2 spec = fit.derive(uniform_boxes(1000, 100, 1), 1000);
-  EXPECT_TRUE(spec.outside(Box2({-1100, 0}, {-1001, 1})));
-  EXPECT_FALSE(spec.outside(Box2({-999, 0}, {-998, 1})));
-  EXPECT_GE(spec.counts()[0] * spec.cell_size(), 2000);
+TEST(CellDirectory, SpaceWithoutCellsTakesNoMemory) {
+  CellDirectory<3> directory;
+  EXPECT_EQ(directory.bytes(), 0u);
+  for (std::uint32_t x = 0; x < 4000; x += 4) {
+    const std::uint64_t code = CellCode<3>::of({x, 0, 0});
+    directory.place(code) = x;
+    directory.added(code);
+  }
+  const std::size_t most = directory.bytes();
+  EXPECT_LT(most, 1000 * 400u);
+  for (std::uint32_t x = 0; x < 4000; x += 4) directory.erase(CellCode<3>::of({x, 0, 0}));
+  EXPECT_EQ(directory.size(), 0u);
+  EXPECT_LT(directory.bytes(), most / 100);
+  EXPECT_EQ(directory.find_block(0), nullptr);
 }
 
 // ---- OpQueues
 
-TEST(OpQueues, KeepOpsByBlockAndGroupInOrder) {
-  OpQueues<float, 2> queues;
+TEST(OpQueues, KeepCallsByBlockAndShardInOrder) {
+  OpQueues queues;
   queues.reset(2, 4);
   EXPECT_EQ(queues.blocks(), 2u);
-  EXPECT_EQ(queues.groups(), 4u);
-  for (ObjectId object = 0; object < 8; ++object) queues.push(object % 2, object, {object, OpKind::kErase, {}});
-  for (std::size_t block = 0; block < 2; ++block) {
-    for (std::size_t group = 0; group < 4; ++group) {
-      std::vector<ObjectId> objects;
-      for (const auto& routed : queues.list(block, group)) {
-        EXPECT_EQ(queues.group_of(routed.cell), group);
-        objects.push_back(routed.op.object);
-      }
-      const auto first = static_cast<ObjectId>(group);
-      EXPECT_EQ(objects, group % 2 == block ? (std::vector<ObjectId>{first, first + 4}) : std::vector<ObjectId>{});
+  for (ObjectId object = 0; object < 16; ++object) {
+    auto& list = queues.list(object % 2, object % 4);
+    if (object < 8) {
+      list.known.push_back({object, static_cast<std::uint32_t>(CellCall::kDetach), object});
+    } else {
+      list.fresh.push_back({~std::uint64_t{object}, object, CellCall::kInsert});
     }
   }
-  queues.reset(2, 4);
-  for (std::size_t group = 0; group < 4; ++group) EXPECT_TRUE(queues.list(0, group).empty());
+  EXPECT_EQ(queues.written(0), 8u);
+  for (std::size_t block = 0; block < 2; ++block) {
+    for (ObjectId shard = 0; shard < 4; ++shard) {
+      const auto& list = queues.list(block, shard);
+      ASSERT_EQ(list.size(), shard % 2 == block ? 4u : 0u);
+      for (ObjectId i = 0; i < list.size() / 2; ++i) {
+        EXPECT_EQ(list.known[i].object, shard + 4 * i);
+        EXPECT_EQ(static_cast<CellCall>(list.known[i].call), CellCall::kDetach);
+        EXPECT_EQ(list.fresh[i].object, 8 + shard + 4 * i);
+        EXPECT_EQ(list.fresh[i].cell, ~std::uint64_t{8 + shard + 4 * i});
+      }
+    }
+  }
+  queues.begin_block(0);
+  EXPECT_EQ(queues.written(0), 0u);
+  EXPECT_EQ(queues.written(1), 8u);
+}
+
+TEST(OpQueues, ReturnMemoryThatTheLatestStepDidNotUse) {
+  OpQueues queues;
+  queues.reset(1, 1);
+  queues.list(0, 0).known.resize(100'000);
+  queues.begin_block(0);
+  EXPECT_GE(queues.bytes(), 100'000 * sizeof(OpQueues::Known));
+  queues.begin_block(0);
+  EXPECT_LT(queues.bytes(), 1000u);
 }
 
 // ---- Grid
 
-/// A grid with the ranges that its client keeps, one block and one group.
-class GridClient {
+/// Objects in a grid of their own and visitors from elsewhere, who all do something at random; and what the grid should
+/// tell of it, from first principles.
+class GridPlay {
  public:
-  GridClient() { grid_.reset(Spec2({0, 0}, {40, 40}, 10), CellOptions{}); }
+  GridPlay(const Spec2& spec, CellKind kind, std::size_t shards, bool wide, std::uint64_t seed)
+      : grid_(spec, {kind, 4}, shards), random_(seed), wide_(wide) {}
 
-  void begin() { grid_.begin_step(1, 1); }
-  void insert(ObjectId object, const Box2& box) { grid_.route_insert(0, object, box, ranges_[object]); }
-  bool update(ObjectId object, const Box2& box) { return grid_.route_update(0, object, box, ranges_[object]); }
-  void erase(ObjectId object) { grid_.route_erase(0, object, ranges_[object]); }
-
-  /// The sum of each pair's deltas.
-  std::map<PairKey, int> end() {
-    std::vector<OverlapDelta> deltas;
-    grid_.gather(0);
-    for (const auto& active : grid_.active(0)) grid_.drain(0, active, deltas, counters_);
-    std::map<PairKey, int> sums;
-    for (const OverlapDelta& delta : deltas) sums[delta.pair] += delta.change;
-    return sums;
-  }
-
-  [[nodiscard]] std::vector<CellIndex> cells_with(ObjectId object) const {
-    std::vector<CellIndex> cells;
-    for (CellIndex cell = 0; cell < grid_.spec().cell_count(); ++cell) {
-      if (grid_.cell(cell) == nullptr) continue;
-      std::vector<SweepAndPrune<double, 2>::Resident> residents;
-      grid_.cell(cell)->append_residents(residents);
-      for (const auto& resident : residents) {
-        if (resident.object == object) cells.push_back(cell);
+  /// Returns what was wrong.
+  std::string step(std::size_t blocks, bool dense, int moving_percent) {
+    boxes_.settle();
+    resident_.clear();
+    visitor_.clear();
+    oracle::begin_step(grid_, blocks, dense);
+    std::set<ObjectId> left;
+    std::set<ObjectId> came;
+    for (ObjectId object = 0; object < kObjects; ++object) {
+      if (here_.contains(object)) {
+        act(object, object % blocks, moving_percent);
+        if (boxes_[object].after && random_.percent(5)) {
+          grid_.route_detach(object % blocks, object, *boxes_[object].after);
+          left.insert(object);
+        }
+      } else {
+        come_by(object, object % blocks);
+        if (boxes_[object].after && !resident_.contains(object) && random_.percent(10) && fits(*boxes_[object].after)) {
+          grid_.route_attach(object % blocks, object, *boxes_[object].after);
+          came.insert(object);
+        }
       }
     }
-    return cells;
+    const oracle::CellSums sums = oracle::finish_step(grid_, boxes_);
+    for (const ObjectId object : resident_)
+      boxes_[object].after ? here_.insert(object).second : here_.erase(object) > 0;
+    here_.insert(came.begin(), came.end());
+    for (const ObjectId object : left) here_.erase(object);
+    const std::string wrong = compare(sums);
+    return wrong.empty() ? compare_homes() : wrong;
   }
-  [[nodiscard]] const Grid<double, 2>& grid() const { return grid_; }
+
+  [[nodiscard]] const Grid2& grid() const { return grid_; }
+  [[nodiscard]] std::size_t changes() const { return changes_; }
 
  private:
-  Grid<double, 2> grid_;
-  std::map<ObjectId, Range2> ranges_;
-  SapCounters counters_;
+  static constexpr ObjectId kObjects = 90;
+
+  [[nodiscard]] static bool resting_only(ObjectId visitor) { return visitor % 2 == 0; }
+  // Whether a grid without limits can take it in.
+  [[nodiscard]] bool fits(const Box2& box) const { return grid_.spec().range(box).count() < 1000; }
+
+  Box2 any_box(bool may_be_wide) {
+    Box2 box;
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      box.min[axis] = random_.between(-8, 40) * 2;
+      box.max[axis] = box.min[axis] + random_.below(8) * 2;
+      if (!may_be_wide || random_.percent(85)) continue;
+      box.min[axis] = random_.percent(50) ? -kInfinity : -30;
+      box.max[axis] = random_.percent(50) ? kInfinity : 70;
+    }
+    return box;
+  }
+
+  // A resident rests, moves or goes.
+  void act(ObjectId object, std::size_t block, int moving_percent) {
+    auto& boxes = boxes_[object];
+    resident_.insert(object);
+    if (random_.percent(8)) {
+      boxes.after.reset();
+      grid_.route_erase(block, object, *boxes.before);
+    } else if (random_.percent(moving_percent)) {
+      boxes.after = any_box(wide_);
+      if (random_.percent(50)) {
+        boxes.after = *boxes.before;
+        boxes.after->max[1] += random_.below(3);
+      }
+      if (boxes.after == boxes.before) return;
+      const bool migrates = grid_.route_update(block, object, *boxes.before, *boxes.after);
+      EXPECT_EQ(migrates, !(grid_.spec().range(*boxes.before) == grid_.spec().range(*boxes.after)));
+    }
+  }
+
+  // A stranger becomes a resident, or stays one that comes, changes or goes elsewhere.
+  void come_by(ObjectId object, std::size_t block) {
+    auto& boxes = boxes_[object];
+    if (!boxes.before && random_.percent(50)) {
+      boxes.after = any_box(wide_);
+      resident_.insert(object);
+      grid_.route_insert(block, object, *boxes.after);
+      return;
+    }
+    if (random_.percent(40)) return;
+    boxes.after = any_box(wide_ || resting_only(object));
+    if (boxes.before && random_.percent(30)) boxes.after.reset();
+    if (boxes.after == boxes.before) return;
+    visitor_.insert(object);
+    grid_.route_visit(block, object, boxes.before ? &*boxes.before : nullptr, boxes.after ? &*boxes.after : nullptr,
+                      resting_only(object));
+  }
+
+  [[nodiscard]] std::set<std::uint64_t> cells(const std::optional<Box2>& box) const {
+    return box ? oracle::cells_of(grid_.spec(), *box) : std::set<std::uint64_t>{};
+  }
+
+  // Adds how the pair changes in the cells where the resident is; a visitor meets it in any of them.
+  void expect(oracle::CellSums& sums, ObjectId resident, ObjectId other, bool visits) {
+    const auto& a = boxes_[resident];
+    const auto& b = boxes_[other];
+    const auto other_before = cells(visits ? std::nullopt : b.before);
+    const auto other_after = cells(visits ? std::nullopt : b.after);
+    const auto hears = [&](const std::set<std::uint64_t>& other_cells, std::uint64_t code) {
+      if (!visits) return other_cells.contains(code);
+      const auto cell = CellCode<2>::coordinates(code);
+      return (b.before && grid_.spec().range(*b.before).contains(cell)) ||
+             (b.after && grid_.spec().range(*b.after).contains(cell));
+    };
+    for (const std::uint64_t code : cells(a.before)) {
+      if (b.before && a.before->overlaps(*b.before) && hears(other_before, code)) --sums[{code, {resident, other}}];
+    }
+    for (const std::uint64_t code : cells(a.after)) {
+      if (b.after && a.after->overlaps(*b.after) && hears(other_after, code)) ++sums[{code, {resident, other}}];
+    }
+  }
+
+  std::string compare(oracle::CellSums sums) {
+    oracle::CellSums expected;
+    for (const ObjectId a : resident_) {
+      for (const ObjectId b : resident_) {
+        if (a < b) expect(expected, a, b, false);
+      }
+      for (const ObjectId b : visitor_) expect(expected, a, b, true);
+    }
+    // Some visitors are for those that rest; what the others hear of them does not matter.
+    const auto idle = [&](const auto& entry) {
+      const PairKey pair = entry.first.second;
+      const bool first_visits = visitor_.contains(pair.lower());
+      const ObjectId visitor = first_visits ? pair.lower() : pair.upper();
+      const ObjectId resident = first_visits ? pair.upper() : pair.lower();
+      return entry.second == 0 || (visitor_.contains(visitor) && resting_only(visitor) && boxes_.changed(resident));
+    };
+    std::erase_if(expected, idle);
+    std::erase_if(sums, idle);
+    changes_ += expected.size();
+    if (expected == sums) return {};
+    return std::to_string(sums.size()) + " changes instead of " + std::to_string(expected.size());
+  }
+
+  std::string compare_homes() {
+    std::string wrong;
+    const auto homes = oracle::homes<double, 2>(grid_, [&](const auto& resident) {
+      if (!here_.contains(resident.object)) wrong = "a ghost";
+      if (!(resident.box == OrderedBox<double, 2>(boxes_.after(resident.object)))) wrong = "a wrong box";
+    });
+    if (!wrong.empty()) return wrong;
+    for (const ObjectId object : here_) {
+      const auto found = homes.find(object);
+      if (found == homes.end() || found->second != cells(boxes_[object].after)) return "a wrong home";
+    }
+    grid_.for_each_cell([&](const auto& cell) {
+      if (cell.size() == 0 || grid_.find(cell.code()) != &cell) wrong = "a cell is empty or not found";
+    });
+    return wrong;
+  }
+
+  Grid2 grid_;
+  oracle::Random random_;
+  bool wide_;
+  Boxes2 boxes_;
+  std::set<ObjectId> here_;      // live in the grid
+  std::set<ObjectId> resident_;  // in this step, but for those that are taken over
+  std::set<ObjectId> visitor_;
+  std::size_t changes_ = 0;
 };
 
-using Cells = std::vector<CellIndex>;
-using Sums = std::map<PairKey, int>;
-
-TEST(Grid, ABoxLivesInExactlyTheCellsOfItsRange) {
-  GridClient client;
-  client.begin();
-  client.insert(7, Box2({5, 5}, {15, 5}));
-  client.end();
-  EXPECT_EQ(client.cells_with(7), (Cells{0, 1}));
-
-  client.begin();
-  EXPECT_FALSE(client.update(7, Box2({6, 6}, {16, 6})));
-  client.end();
-  EXPECT_EQ(client.cells_with(7), (Cells{0, 1}));
-
-  client.begin();
-  EXPECT_TRUE(client.update(7, Box2({15, 15}, {16, 16})));
-  client.end();
-  EXPECT_EQ(client.cells_with(7), (Cells{5}));
-
-  client.begin();
-  client.erase(7);
-  client.end();
-  EXPECT_EQ(client.cells_with(7), (Cells{}));
-}
-
-TEST(Grid, CountsAPairInEveryCellWhereItOverlaps) {
-  GridClient client;
-  client.begin();
-  client.insert(1, Box2({5, 5}, {25, 5}));
-  client.insert(2, Box2({8, 5}, {12, 5}));
-  EXPECT_EQ(client.end(), (Sums{{PairKey(1, 2), 2}}));
-}
-
-TEST(Grid, AMigrationLeavesTheSumOfAPairThatStays) {
-  GridClient client;
-  client.begin();
-  client.insert(1, Box2({5, 5}, {9, 9}));
-  client.insert(2, Box2({5, 5}, {9, 9}));
-  EXPECT_EQ(client.end(), (Sums{{PairKey(1, 2), 1}}));
-  client.begin();
-  EXPECT_TRUE(client.update(1, Box2({15, 5}, {19, 9})));
-  EXPECT_TRUE(client.update(2, Box2({15, 5}, {19, 9})));
-  EXPECT_EQ(client.end(), (Sums{{PairKey(1, 2), 0}}));
-}
-
-TEST(Grid, OnlyCellsWithOpsAreActiveAndComeInOrder) {
-  GridClient client;
-  client.begin();
-  client.insert(1, Box2({35, 35}, {36, 36}));
-  client.insert(2, Box2({5, 5}, {6, 6}));
-  client.insert(3, Box2({15, 5}, {16, 6}));
-  client.end();
-  client.begin();
-  client.update(1, Box2({35, 35}, {37, 37}));
-  client.update(2, Box2({5, 5}, {7, 7}));
-  client.end();
-  Cells active;
-  for (const auto& cell : client.grid().active(0)) {
-    active.push_back(cell.cell);
-    EXPECT_EQ(cell.op_count, 1u);
-    EXPECT_EQ(cell.population, 1u);
+TEST(Grid, TellsEveryCellExactlyWhatChangesThere) {
+  std::uint64_t seed = 0;
+  for (const CellKind kind : {CellKind::kRows, CellKind::kAuto, CellKind::kBatch, CellKind::kSegmented}) {
+    for (const std::size_t shards : {1, 8}) {
+      for (const bool limited : {true, false}) {
+        const Spec2 spec = limited ? Spec2(10, {0, 0}, {5, 3}) : Spec2::unlimited(10, {0, 0});
+        GridPlay play(spec, kind, shards, limited, ++seed);
+        const bool rows = kind == CellKind::kRows || kind == CellKind::kAuto;
+        for (std::size_t step = 0; step < 30; ++step) {
+          const bool dense = rows && step % 3 == 1;
+          ASSERT_EQ(play.step(1 + step % 4, dense, dense ? 90 : 20), "")
+              << "kind " << static_cast<int>(kind) << ", " << shards << " shards, step " << step;
+        }
+        EXPECT_GT(play.changes(), 1000u);
+        EXPECT_GT(play.grid().cell_count(), 0u);
+        EXPECT_GT(play.grid().cell_bytes(), 0u);
+        EXPECT_GT(play.grid().queue_bytes(), 0u);
+      }
+    }
   }
-  EXPECT_EQ(active, (Cells{0, 15}));
 }
 
-TEST(Grid, AnEmptyCellIsDropped) {
-  GridClient client;
-  client.begin();
-  client.insert(1, Box2({5, 5}, {6, 6}));
-  client.end();
-  EXPECT_NE(client.grid().cell(0), nullptr);
-  client.begin();
-  client.erase(1);
-  client.end();
-  EXPECT_EQ(client.grid().cell(0), nullptr);
+/// One shard, one block.
+class SmallGrid : public ::testing::TestWithParam<bool> {
+ protected:
+  void begin() {
+    boxes_.settle();
+    oracle::begin_step(grid_, 1, GetParam());
+  }
+  void insert(ObjectId object, const Box2& box) {
+    boxes_[object].after = box;
+    grid_.route_insert(0, object, box);
+  }
+  void update(ObjectId object, const Box2& box) {
+    boxes_[object].after = box;
+    grid_.route_update(0, object, *boxes_[object].before, box);
+  }
+  void erase(ObjectId object) {
+    boxes_[object].after.reset();
+    grid_.route_erase(0, object, *boxes_[object].before);
+  }
+  oracle::CellSums end() { return oracle::finish_step(grid_, boxes_); }
+
+  Grid2 grid_{Spec2(10, {0, 0}, {3, 3}), {CellKind::kRows}, 1};
+  Boxes2 boxes_;
+};
+
+TEST_P(SmallGrid, OnlyCellsWithCallsAreActiveButInDenseSteps) {
+  begin();
+  insert(1, Box2({35, 35}, {36, 36}));
+  insert(2, Box2({5, 5}, {6, 6}));
+  insert(3, Box2({15, 5}, {16, 6}));
+  end();
+  begin();
+  update(1, Box2({35, 35}, {37, 37}));
+  end();
+  EXPECT_EQ(grid_.active(0).size(), GetParam() ? 3u : 1u);
+  for (const auto& active : grid_.active(0)) {
+    EXPECT_EQ(active.call_count, GetParam() ? 0u : 1u);
+    EXPECT_EQ(active.population, 1u);
+  }
 }
 
-TEST(Grid, ResetDropsAllCells) {
-  Grid<double, 2> grid;
-  grid.reset(Spec2({0, 0}, {40, 40}, 10), CellOptions{});
-  grid.begin_step(1, 1);
-  Range2 range;
-  grid.route_insert(0, 1, Box2({0, 0}, {100, 100}), range);
-  grid.gather(0);
-  std::vector<OverlapDelta> deltas;
-  SapCounters counters;
-  for (const auto& active : grid.active(0)) grid.drain(0, active, deltas, counters);
-  EXPECT_GT(grid.cell_bytes(), 0u);
-  grid.reset(Spec2({0, 0}, {20, 20}, 10), CellOptions{});
-  EXPECT_EQ(grid.spec().cell_count(), 4u);
-  for (CellIndex cell = 0; cell < 4; ++cell) EXPECT_EQ(grid.cell(cell), nullptr);
+TEST_P(SmallGrid, AnEmptyGridHasNoCellsAndLittleMemory) {
+  begin();
+  for (ObjectId object = 0; object < 1000; ++object) insert(object, Box2({1.0 * object, 5}, {1.0 * object, 36}));
+  end();
+  EXPECT_EQ(grid_.cell_count(), 16u);
+  const std::size_t most = grid_.cell_bytes();
+  begin();
+  for (ObjectId object = 0; object < 1000; ++object) erase(object);
+  end();
+  EXPECT_EQ(grid_.cell_count(), 0u);
+  EXPECT_EQ(grid_.find(CellCode<2>::of({0, 0})), nullptr);
+  EXPECT_LT(grid_.cell_bytes(), most / 8);
 }
+
+TEST_P(SmallGrid, ACellThatIsLeftAndEnteredInOneStepStays) {
+  begin();
+  insert(1, Box2({5, 5}, {6, 6}));
+  end();
+  begin();
+  update(1, Box2({15, 15}, {16, 16}));
+  insert(2, Box2({5, 5}, {6, 6}));
+  end();
+  EXPECT_EQ(grid_.cell_count(), 2u);
+  ASSERT_NE(grid_.find(CellCode<2>::of({0, 0})), nullptr);
+  EXPECT_EQ(grid_.find(CellCode<2>::of({0, 0}))->size(), 1u);
+}
+
+TEST_P(SmallGrid, AHugeVisitorAsksOnlyCellsThatExist) {
+  const Spec2 endless = Spec2::unlimited(1, {0, 0});
+  Grid2 grid(endless, {CellKind::kRows}, 4);
+  oracle::begin_step(grid, 1, false);
+  for (ObjectId object = 0; object < 3; ++object) {
+    boxes_[object].after = Box2({10.0 * object, 0.5}, {10.0 * object, 0.5});
+    grid.route_insert(0, object, *boxes_[object].after);
+  }
+  oracle::finish_step(grid, boxes_);
+  boxes_.settle();
+  oracle::begin_step(grid, 1, GetParam());
+  boxes_[7].after = Box2({5, -kInfinity}, {kInfinity, kInfinity});
+  grid.route_visit(0, 7, nullptr, &*boxes_[7].after, true);
+  EXPECT_EQ(grid.calls(0), 2u);
+  EXPECT_EQ(oracle::finish_step(grid, boxes_).size(), 2u);
+  EXPECT_EQ(grid.cell_count(), 3u);
+}
+
+INSTANTIATE_TEST_SUITE_P(Steps, SmallGrid, ::testing::Bool(),
+                         [](const auto& dense) { return dense.param ? "Dense" : "Sparse"; });
 
 }  // namespace
 }  // namespace sweepgrid
