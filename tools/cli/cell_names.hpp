@@ -10,12 +10,8 @@ namespace sweepgrid {
 
 /// The kinds of cell as the command line calls them.
 [[nodiscard]] inline std::map<std::string, CellKind> cell_kinds_by_name() {
-  return {{"auto", CellKind::kAuto},
-          {"rows", CellKind::kRows},
-          {"batch", CellKind::kBatch},
-          {"segmented", CellKind::kSegmented},
-          {"classic", CellKind::kClassic},
-          {"plane", CellKind::kPlane}};
+  return {{"auto", CellKind::kAuto},           {"rows", CellKind::kRows},       {"batch", CellKind::kBatch},
+          {"segmented", CellKind::kSegmented}, {"classic", CellKind::kClassic}, {"plane", CellKind::kPlane}};
 }
 
 [[nodiscard]] inline std::string cell_name(CellKind kind) {

@@ -164,7 +164,7 @@ class EngineCore {
 
   typename GridFit<Scalar, Dim>::Result fitted_;  // with witness counts: where the grid is
   bool gridded_ = false;
-  bool dense_ = false;  // this step: most objects have changed
+  bool dense_ = false;               // this step: most objects have changed
   std::size_t objects_at_step_ = 0;  // how many there were when the latest step began
   std::uint64_t last_changed_ = 0;   // ops of the latest step that had any
   std::uint64_t pairs_ = 0;          // by the events
