@@ -23,7 +23,7 @@ void SWEEPGRID_ENGINE::add_order_stages() {
       "order", {core_.last_stage()},
       [this](std::vector<std::uint64_t>& costs) {
         const auto workers = static_cast<std::size_t>(core_.executor().concurrency());
-        const std::size_t shards = std::min(core_.lists(), workers == 1 ? 1 : 4 * workers);
+        const std::size_t shards = std::min(core_.lists(), workers);
         for (Sorter& sorter : sorters_) sorter.reset(shards);
         costs.assign(kLists * shards, 1);
       },
@@ -32,7 +32,7 @@ void SWEEPGRID_ENGINE::add_order_stages() {
       "merge", {order},
       [this](std::vector<std::uint64_t>& costs) {
         const auto workers = static_cast<std::size_t>(core_.executor().concurrency());
-        for (std::size_t l = 0; l < kLists; ++l) ranges_[l] = sorters_[l].cut(4 * workers, list(l));
+        for (std::size_t l = 0; l < kLists; ++l) ranges_[l] = sorters_[l].cut(2 * workers, list(l));
         costs.assign(ranges_[kEnds] + ranges_[kBegins], 1);
       },
       [this](std::size_t task) {
