@@ -66,7 +66,7 @@ class EventOrder {
 template <class Key, class Order>
 std::size_t EventOrder<Key, Order>::cut(std::size_t ranges, std::vector<PairType>& out) {
   constexpr std::size_t kSmallest = 512;  // a range with fewer events is not worth a task
-  constexpr std::size_t kSamples = 8;     // of each shard for each range
+  constexpr std::size_t kSamples = 16;    // of all shards for each range
   if (shards_.size() == 1) {
     out.swap(shards_[0]);
     return 0;
@@ -79,8 +79,8 @@ std::size_t EventOrder<Key, Order>::cut(std::size_t ranges, std::vector<PairType
 
   std::vector<PairType> samples;
   if (ranges > 1) {
+    const std::size_t stride = std::max<std::size_t>(1, total / (kSamples * ranges));
     for (const auto& shard : shards_) {
-      const std::size_t stride = std::max<std::size_t>(1, shard.size() / (kSamples * ranges));
       for (std::size_t i = stride / 2; i < shard.size(); i += stride) samples.push_back(shard[i]);
     }
     std::sort(samples.begin(), samples.end(), less);
