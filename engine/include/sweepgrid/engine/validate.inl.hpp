@@ -81,6 +81,7 @@ void EngineCore<Scalar, Dim>::validate() const {
 }
 
 // G1: a box is in exactly the cells of its range, with the coordinates that the client gave.
+// G3: no box is wider than the grid that it lives in is meant for, so no box is in many cells.
 template <class Scalar, int Dim>
 void EngineCore<Scalar, Dim>::validate_residents() const {
   std::vector<std::uint64_t> cells_of(objects_.bound(), 0);
@@ -117,6 +118,9 @@ void EngineCore<Scalar, Dim>::validate_residents() const {
     require_invariant(
         static_cast<double>(cells_of[object]) == levels_.grid(record.grid).spec().range(record.box).count(), "G1",
         [&] { return "object " + std::to_string(object) + " is not in all cells of its range"; });
+    require_invariant(levels_.holds(record.grid, LevelsType::width(record.box)), "G3", [&] {
+      return "object " + std::to_string(object) + " is too wide for grid " + std::to_string(record.grid);
+    });
   }
   require_invariant(live == objects_.size(), "G1", [] { return "the number of live objects is wrong"; });
 }

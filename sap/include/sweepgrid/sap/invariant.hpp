@@ -5,7 +5,7 @@
 
 namespace sweepgrid {
 
-/// Thrown by validate(): the name of the broken invariant (S1 to S5, G1, G2, E1 to E3) and what broke it.
+/// Thrown by validate(): the name of the broken invariant (S1 to S5, G1 to G3, E1 to E3) and what broke it.
 class InvariantError : public std::logic_error {
  public:
   InvariantError(const std::string& invariant, const std::string& detail)
