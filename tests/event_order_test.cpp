@@ -45,7 +45,7 @@ template <class Order>
 void expect_same_for_any_shards_and_ranges(int count, int keys) {
   const auto pairs = random_pairs<Order>(count, keys);
   auto expected = pairs;
-  std::sort(expected.begin(), expected.end(), EventOrder<int, Order>::less);
+  std::sort(expected.begin(), expected.end(), EventOrder<int, Order>::kLess);
   for (const std::size_t shards : {1, 2, 16, 64}) {
     for (const std::size_t ranges : {1, 2, 4, 32}) {
       const auto spread = [&](const Pair<int>& pair) {
@@ -91,9 +91,9 @@ TEST(EventOrder, PutsTheKeysOfAPairInOrder) {
   using Order = EventOrder<int, KeyOrder<int>>;
   EXPECT_EQ(Order::pair(2, -1), (Pair<int>{-1, 2}));
   EXPECT_EQ(Order::pair(-1, 2), (Pair<int>{-1, 2}));
-  EXPECT_TRUE(Order::less({1, 5}, {2, 3}));
-  EXPECT_TRUE(Order::less({1, 5}, {1, 6}));
-  EXPECT_FALSE(Order::less({1, 5}, {1, 5}));
+  EXPECT_TRUE(Order::kLess({1, 5}, {2, 3}));
+  EXPECT_TRUE(Order::kLess({1, 5}, {1, 6}));
+  EXPECT_FALSE(Order::kLess({1, 5}, {1, 5}));
 }
 
 TEST(EventOrder, MovesKeysThatOwnMemory) {
@@ -101,7 +101,7 @@ TEST(EventOrder, MovesKeysThatOwnMemory) {
   for (int i = 0; i < 2000; ++i) pairs.push_back({"a long name that is not stored in place " + std::to_string(i), "b"});
   auto expected = pairs;
   using Order = KeyOrder<std::string>;
-  std::sort(expected.begin(), expected.end(), EventOrder<std::string, Order>::less);
+  std::sort(expected.begin(), expected.end(), EventOrder<std::string, Order>::kLess);
   const auto shard_of = [](const Pair<std::string>& pair) { return pair.first.size() % 4; };
   EXPECT_EQ((sorted_by<std::string, Order>(pairs, 4, 3, shard_of)), expected);
 }

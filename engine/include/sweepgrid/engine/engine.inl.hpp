@@ -115,7 +115,7 @@ SWEEPGRID_ENGINE_TEMPLATE
 std::vector<Pair<Key>> SWEEPGRID_ENGINE::pairs() const {
   std::vector<Pair<Key>> pairs;
   for (const PairKey pair : core_.pairs()) pairs.push_back(keys_of(pair));
-  std::sort(pairs.begin(), pairs.end(), Sorter::less);
+  std::sort(pairs.begin(), pairs.end(), Sorter::kLess);
   return pairs;
 }
 
@@ -142,7 +142,7 @@ void SWEEPGRID_ENGINE::validate() const {
   core_.validate();
   for (const auto* events : {&events_.ends, &events_.begins}) {
     const auto unordered = std::adjacent_find(events->begin(), events->end(),
-                                              [](const auto& a, const auto& b) { return !Sorter::less(a, b); });
+                                              [](const auto& a, const auto& b) { return !Sorter::kLess(a, b); });
     require_invariant(unordered == events->end(), "E3", [&] {
       return "events are not sorted and unique at (" + describe(unordered->first) + ", " + describe(unordered->second) +
              ")";
@@ -152,7 +152,7 @@ void SWEEPGRID_ENGINE::validate() const {
   // objects took over its keys.
   const std::vector<Pair<Key>> now = pairs();
   const auto overlaps = [&](const Pair<Key>& pair) {
-    return std::binary_search(now.begin(), now.end(), pair, Sorter::less);
+    return std::binary_search(now.begin(), now.end(), pair, Sorter::kLess);
   };
   for (const auto& pair : events_.begins) {
     require_invariant(overlaps(pair), "E2", [&] {
@@ -160,7 +160,7 @@ void SWEEPGRID_ENGINE::validate() const {
     });
   }
   for (const auto& pair : events_.ends) {
-    const bool begun = std::binary_search(events_.begins.begin(), events_.begins.end(), pair, Sorter::less);
+    const bool begun = std::binary_search(events_.begins.begin(), events_.begins.end(), pair, Sorter::kLess);
     require_invariant(begun == overlaps(pair), "E3", [&] {
       return "an end of a pair that overlaps: (" + describe(pair.first) + ", " + describe(pair.second) + ")";
     });

@@ -19,7 +19,7 @@ class EventOrder {
   using PairType = Pair<Key>;
 
   /// An object, not a function: sorting then has it inlined.
-  static constexpr auto less = [](const PairType& a, const PairType& b) {
+  static constexpr auto kLess = [](const PairType& a, const PairType& b) {
     const Order order;
     if constexpr (std::is_integral_v<Key>) {
       // Without a branch that nobody could foresee.
@@ -46,7 +46,7 @@ class EventOrder {
   /// Also drops doubles, which lie in one shard.
   void sort_shard(std::size_t index) {
     auto& shard = shards_[index];
-    std::sort(shard.begin(), shard.end(), less);
+    std::sort(shard.begin(), shard.end(), kLess);
     shard.erase(std::unique(shard.begin(), shard.end()), shard.end());
   }
 
@@ -83,7 +83,7 @@ std::size_t EventOrder<Key, Order>::cut(std::size_t ranges, std::vector<PairType
     for (const auto& shard : shards_) {
       for (std::size_t i = stride / 2; i < shard.size(); i += stride) samples.push_back(shard[i]);
     }
-    std::sort(samples.begin(), samples.end(), less);
+    std::sort(samples.begin(), samples.end(), kLess);
   }
   const std::size_t width = shards_.size();
   cuts_.assign((ranges + 1) * width, 0);
@@ -94,7 +94,7 @@ std::size_t EventOrder<Key, Order>::cut(std::size_t ranges, std::vector<PairType
       cuts_[range * width + s] =
           range == ranges ? shard.size()
                           : static_cast<std::size_t>(std::lower_bound(shard.begin(), shard.end(),
-                                                                      samples[range * samples.size() / ranges], less) -
+                                                                      samples[range * samples.size() / ranges], kLess) -
                                                      shard.begin());
       offsets_[range] += cuts_[range * width + s];
     }
@@ -114,7 +114,7 @@ void EventOrder<Key, Order>::merge_range(std::size_t index, std::vector<PairType
     runs += first != last ? 1 : 0;
     end = std::copy(first, last, end);
   }
-  if (runs > 1) std::sort(begin, end, less);
+  if (runs > 1) std::sort(begin, end, kLess);
 }
 
 }  // namespace sweepgrid

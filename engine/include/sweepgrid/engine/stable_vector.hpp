@@ -59,7 +59,9 @@ class StableVector {
   // In the innermost loops: a few instructions and no branch.
   [[nodiscard]] T* address(std::uint32_t index) const {
     const int block = std::bit_width(index | (kFirst - 1)) - kFirstBits;
-    return reinterpret_cast<T*>(bases_[block] + std::uintptr_t{index} * sizeof(T));
+    // A base may lie outside of its block, where no pointer may be.
+    const std::uintptr_t place = bases_[block] + std::uintptr_t{index} * sizeof(T);
+    return reinterpret_cast<T*>(place);  // NOLINT(performance-no-int-to-ptr)
   }
   static std::uint64_t first_of(int block) { return block == 0 ? 0 : std::uint64_t{1} << (kFirstBits + block - 1); }
 

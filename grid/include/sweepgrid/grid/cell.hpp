@@ -71,6 +71,7 @@ class Cell {
     std::vector<typename Kind::Resident> residents;
     kind().append_residents(residents);
     std::vector<CellOp<Scalar, Dim>> ops;
+    ops.reserve(residents.size());
     for (const auto& resident : residents) ops.push_back({resident.object, OpKind::kInsert, resident.box});
     options.kind = wanted;
     SapCounters unused;
