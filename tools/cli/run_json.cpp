@@ -4,9 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "cli/build_info.hpp"
 #include "cli/cell_names.hpp"
-#include "cli/machine_info.hpp"
+#include "cli/provenance_json.hpp"
 
 namespace sweepgrid {
 namespace {
@@ -18,23 +17,6 @@ constexpr int kSchemaVersion = 2;
 template <class T>
 Json optional_json(const std::optional<T>& value) {
   return value ? Json(*value) : Json(nullptr);
-}
-
-Json build_json() {
-  const BuildInfo build = build_info();
-  return {{"version", build.version},
-          {"commit", build.commit},
-          {"compiler", build.compiler},
-          {"flags", build.flags},
-          {"build_type", build.build_type}};
-}
-
-Json machine_json() {
-  const MachineInfo machine = machine_info();
-  return {{"system", machine.system},
-          {"cpu", machine.cpu},
-          {"cores", machine.cores},
-          {"memory_bytes", machine.memory_bytes}};
 }
 
 Json settings_json(const RunOptions& options, int workers) {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <cstdint>
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -22,9 +22,9 @@ struct Axis {
 struct Point {
   double x = 0;
   double y = 0;
-  std::optional<double> low;
-  std::optional<double> high;
-  std::string label;  ///< for the tooltip, beside the numbers
+  std::optional<double> low = {};
+  std::optional<double> high = {};
+  std::string label = {};  ///< for the tooltip, beside the numbers
 };
 
 enum class SeriesStyle {
@@ -56,8 +56,10 @@ struct Tile {
   std::size_t column = 0;
   std::size_t row = 0;
   std::optional<double> value;
-  std::string mark;   ///< drawn into the tile: at most 4 characters
-  std::string label;  ///< for the tooltip
+  std::string mark;                ///< drawn into the tile: at most 4 characters
+  std::string label;               ///< for the tooltip
+  std::optional<double> low = {};  ///< spread of `value`, as a Point's
+  std::optional<double> high = {};
 };
 
 /// Numbers over two lists of names, as colours.
@@ -95,7 +97,9 @@ struct Timeline {
 /// Cells that are numbers sort as numbers.
 struct Cell {
   std::string text;
-  std::optional<double> number;
+  std::optional<double> number = {};
+  std::optional<double> low = {};  ///< spread of `number`, as a Point's
+  std::optional<double> high = {};
 };
 
 struct Table {

@@ -1,0 +1,2 @@
+const report = JSON.parse(document.getElementById("report-json").textContent);
+document.getElementById("report").textContent = report.summary;
