@@ -33,7 +33,7 @@ const Parameter kParameters[] = {
     {"churn", &GeneratorParams::churn, 0, 1, "part erased, and as many inserted, per step"},
     {"density", &GeneratorParams::density, 1e-9, 1e9, "volume of all objects / that of the world"},
     {"speed", &GeneratorParams::speed, 0, kHuge, "widths per step"},
-    {"width", &GeneratorParams::width, kTiny, kHuge, "edge of an object"},
+    {"width", &GeneratorParams::width, kTiny, 1e38, "edge of an object"},
     {"seed", &GeneratorParams::seed, 0, 0x1p64, "of the random numbers"},
     {"steps", &GeneratorParams::steps, 0, 0x1p53, "after the start"},
     {"dim", &GeneratorParams::dim, 2, 3, "2 or 3"},
@@ -43,6 +43,17 @@ const Parameter kParameters[] = {
     {"spread", &GeneratorParams::spread, 0, 1, "deviation of a clump, in edges of the world"},
     {"layers", &GeneratorParams::layers, 0, 1e9, "height of the world in widths, 0: a cube"},
     {"teleport", &GeneratorParams::teleport, 0, 1, "part of the moving objects that jumps anywhere per step"},
+    {"offset", &GeneratorParams::offset, 0, kHuge, "of the world from the origin, in widths"},
+    {"jitter", &GeneratorParams::jitter, 0, kHuge, "how far objects at rest shake, in widths"},
+    {"turn", &GeneratorParams::turn, 0, 1, "radians per step; above 0 objects are oriented boxes"},
+    {"snap", &GeneratorParams::snap, 0, kHuge, "boxes lie at multiples of so many widths, 0: anywhere"},
+    {"cross", &GeneratorParams::cross, 0, kHuge, "widths between borders that moving objects cross, 0: none"},
+    {"thin", &GeneratorParams::thin, 0, kHuge, "thickness of objects on `axis`, in their widths"},
+    {"axis", &GeneratorParams::axis, 0, 2, "of layers, thin and infinite; 2D: at most 1"},
+    {"covers", &GeneratorParams::covers, 0, kMany, "objects that cover the whole world"},
+    {"infinite", &GeneratorParams::infinite, 0, 1, "part of the objects that is infinite on one side of `axis`"},
+    {"nan", &GeneratorParams::nan, 0, 1, "part of the moving objects with a NaN per step: bad input"},
+    {"inverted", &GeneratorParams::inverted, 0, 1, "part of the moving objects with min > max per step: bad input"},
 };
 
 struct Generator {
@@ -56,6 +67,17 @@ constexpr Generator kGenerators[] = {
     {"sizes", "large=0.01", "1 % of the objects are ten times as wide"},
     {"pile", "layers=4,density=0.3", "a thin layer of objects"},
     {"teleport", "teleport=1", "moving objects jump anywhere in every step"},
+    {"fast", "n=10000,moving=1,churn=0,speed=2", "objects tunnel: two widths per step"},
+    {"far", "n=10000,moving=1,churn=0,offset=1e6", "far from the origin"},
+    {"resting", "n=10000,moving=0.01,churn=0,jitter=0.005", "objects shake at their places, few move"},
+    {"turning", "n=10000,moving=1,churn=0,turn=0.05,density=0.3", "oriented boxes that fly and turn"},
+    {"wall", "n=10000,moving=1,churn=0,layers=1,axis=0", "all objects at the same x"},
+    {"lattice", "n=10000,moving=1,churn=0,snap=1,density=0.3,speed=1", "boxes touch and tie, all at whole widths"},
+    {"plates", "n=10000,moving=1,churn=0,thin=0", "objects without thickness"},
+    {"crossing", "n=10000,moving=1,churn=0,cross=4,speed=0.01", "objects go to and fro over cell borders"},
+    {"point", "n=1000,moving=1,churn=0,clusters=1,spread=0,speed=0.001", "all objects at one point"},
+    {"huge", "n=10000,moving=1,churn=0,width=1e36,infinite=0.01", "near the limits of float, with infinities"},
+    {"bad", "n=1000,moving=1,churn=0,nan=0.01,inverted=0.01", "some boxes are bad input, to be refused"},
 };
 
 std::optional<double> parse_number(std::string_view text) {
@@ -137,6 +159,9 @@ std::optional<GeneratorParams> parse_generator(std::string_view spec) {
   GeneratorParams params;
   set_parameters(name, generator->defaults, params);
   if (spec.size() > name.size()) set_parameters(name, spec.substr(name.size() + 1), params);
+  if (params.turn > 0 && (params.snap > 0 || params.thin != 1 || params.covers > 0 || params.infinite > 0)) {
+    fail(name, "oriented boxes (turn) go with neither snap, thin, covers nor infinite");
+  }
   return params;
 }
 

@@ -24,8 +24,19 @@ struct GeneratorParams {
   double scale = 10;
   std::uint64_t clusters = 0;  ///< clumps in which objects appear; 0: anywhere
   double spread = 0.05;        ///< deviation of a clump from its centre, in edges of the world
-  double layers = 0;           ///< height of the world (its last axis) in widths; 0: as the other axes
+  double layers = 0;           ///< extent of the world on `axis` in widths; 0: as on the other axes
   double teleport = 0;         ///< part of the moving objects that jumps anywhere in each step
+  double offset = 0;           ///< of the world's corner from the origin, on every axis, in widths
+  double jitter = 0;           ///< how far objects at rest shake about their places, in widths
+  double turn = 0;             ///< more than 0: objects are oriented boxes; the moving ones turn by as many radians
+  double snap = 0;             ///< more than 0: boxes lie at multiples of so many widths
+  double cross = 0;            ///< more than 0: moving objects go to and fro over multiples of so many widths
+  double thin = 1;             ///< thickness of objects on `axis`, in their widths
+  std::uint64_t axis = 2;      ///< of layers, thin and infinite; in two dimensions at most 1
+  std::uint64_t covers = 0;    ///< objects that cover the whole world, at rest
+  double infinite = 0;         ///< part of the objects that reaches to infinity on one side of `axis`
+  double nan = 0;              ///< part of the moving objects whose new box has a NaN, in each step: bad input
+  double inverted = 0;         ///< part of the moving objects whose new box has min > max, in each step: bad input
 };
 
 /// The parameters that `spec` asks for, "NAME" or "NAME:key=value,key=value", on top of those of generator NAME; absent

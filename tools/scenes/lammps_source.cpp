@@ -29,6 +29,7 @@ LammpsSource::LammpsSource(std::unique_ptr<ByteStream> content, std::optional<do
   if (!read_frame_from_file(*first_, header)) throw SceneError(fmt::format("{}: no frame", content_->path()));
   info_.name = content_->path();
   info_.format = "lammps";
+  info_.shapes = ShapeKind::kSpheres;
   info_.compression = content_->compression();
   SceneBox world(header.bounds.low, header.bounds.high);
   if (world.valid()) info_.bounds = world;

@@ -8,13 +8,15 @@
 
 #include <sweepgrid/sap/box.hpp>
 
+#include "scenes/oriented_box.hpp"
+
 namespace sweepgrid {
 
 /// Number that a scene gives an object. Files keep theirs; a key whose object is gone may come back.
 using SceneKey = std::uint64_t;
 
-/// Doubles hold what the files hold: float32 exactly, text to its last digit. In a scene of two dimensions z is [0, 0].
-using SceneBox = Box<double, 3>;
+/// What the objects are that the boxes bound. Spheres are inscribed in their boxes (circles, in two dimensions).
+enum class ShapeKind { kBoxes, kSpheres, kOrientedBoxes };
 
 /// What changes from one step to the next. Keys are distinct within the whole struct, and the three parts may be
 /// applied in any order.
@@ -24,6 +26,9 @@ struct SceneStep {
   std::vector<SceneBox> inserted_boxes;  ///< of inserted[i]
   std::vector<SceneKey> updated;         ///< lived on, with a box that differs from the last one
   std::vector<SceneBox> updated_boxes;   ///< of updated[i]
+  /// Of inserted[i] and of updated[i] where the objects are oriented boxes; else empty.
+  std::vector<OrientedBox> inserted_shapes;
+  std::vector<OrientedBox> updated_shapes;
 
   void clear() {
     erased.clear();
@@ -31,6 +36,8 @@ struct SceneStep {
     inserted_boxes.clear();
     updated.clear();
     updated_boxes.clear();
+    inserted_shapes.clear();
+    updated_shapes.clear();
   }
 };
 
@@ -40,6 +47,7 @@ struct SceneInfo {
   std::string format;                                        ///< "aabbs", "lammps" or "generator"
   std::string compression;                                   ///< "none", "gzip", "xz" or "zstd"
   int dim = 3;                                               ///< 2 or 3
+  ShapeKind shapes = ShapeKind::kBoxes;                      ///< what the boxes bound, as far as it is known
   std::optional<SceneBox> bounds;                            ///< the world as the scene tells it; boxes may stick out
   std::optional<std::uint64_t> steps;                        ///< after the start
   std::vector<std::pair<std::string, std::string>> details;  ///< more, by format: name and value
