@@ -8,6 +8,8 @@
 
 #include <oneapi/tbb/flow_graph.h>
 
+#include <sweepgrid/scheduler/recording_executor.hpp>
+
 #include "arena_executor.hpp"
 #include "task_order.hpp"
 
@@ -19,6 +21,12 @@ using Node = oneapi::tbb::flow::continue_node<oneapi::tbb::flow::continue_msg>;
 
 std::int64_t nanoseconds(Clock::duration duration) {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(duration).count();
+}
+
+// Null when there is none.
+ArenaExecutor* arena_behind(Executor& executor) {
+  if (auto* const recording = dynamic_cast<RecordingExecutor*>(&executor)) return arena_behind(recording->runs_on());
+  return dynamic_cast<ArenaExecutor*>(&executor);
 }
 
 /// One stage with the buffers that it keeps from run to run. Written by the one thread that runs the stage, except
@@ -40,7 +48,7 @@ struct Stage {
 
 struct StageGraph::Impl {
   explicit Impl(std::shared_ptr<Executor> chosen)
-      : executor(std::move(chosen)), arena_executor(dynamic_cast<ArenaExecutor*>(executor.get())) {
+      : executor(std::move(chosen)), arena_executor(arena_behind(*executor)) {
     // A flow graph runs where it was made.
     if (arena_executor != nullptr) arena_executor->execute([this] { graph.emplace(); });
   }
