@@ -39,6 +39,7 @@ struct Series {
   std::string name;
   SeriesStyle style = SeriesStyle::kMeasured;
   std::vector<Point> points;  ///< by growing x, but for kScatter
+  std::string like = {};  ///< the name of an earlier series whose colour and mark it takes: of what it is a fit, say
 };
 
 /// Curves over numbers.

@@ -64,8 +64,10 @@ Json point_json(const Point& point) {
 }
 
 Json series_json(const Series& series) {
-  return {
-      {"name", series.name}, {"style", style_name(series.style)}, {"points", array_json(series.points, point_json)}};
+  Json json = {{"name", series.name}, {"style", style_name(series.style)}};
+  add_text(json, "like", series.like);
+  json["points"] = array_json(series.points, point_json);
+  return json;
 }
 
 Json chart_json(const LineChart& chart) {
