@@ -49,7 +49,7 @@ void expect_same_for_any_shards_and_ranges(int count, int keys) {
   for (const std::size_t shards : {1, 2, 16, 64}) {
     for (const std::size_t ranges : {1, 2, 4, 32}) {
       const auto spread = [&](const Pair<int>& pair) {
-        return static_cast<std::size_t>(pair.first * 31 + pair.second) % shards;
+        return (static_cast<std::size_t>(pair.first) * 31 + static_cast<std::size_t>(pair.second)) % shards;
       };
       const auto skewed = [&](const Pair<int>& pair) { return pair.first % 50 == 0 ? shards - 1 : 0; };
       ASSERT_EQ((sorted_by<int, Order>(pairs, shards, ranges, spread)), expected) << shards << " " << ranges;
