@@ -31,16 +31,17 @@ const tip = (head, rows) => element("div", {class: "tip"}, head && element("b", 
   ...rows.map(([mark, name, value]) => element("div", {}, mark ?? "", element("span", {}, name),
     element("em", {}, value))));
 
-// Puts a chart into `holder` and keeps it at the holder's width. `option`: of that width.
+// Puts a chart into `holder` and keeps it at the holder's width, of which `height` and `option` are functions.
 function draw(holder, height, option, renderer = "svg") {
-  holder.style.height = `${height}px`;
   const widthNow = () => (isPrinting() ? kPrintWidth : holder.clientWidth || kPrintWidth);
   let width = widthNow();
-  const chart = init(holder, null, {renderer, width, height, devicePixelRatio: Math.max(2, devicePixelRatio)});
+  const chart = init(holder, null, {renderer, width, height: height(width), devicePixelRatio: Math.max(2, devicePixelRatio)});
+  const {fontFamily} = getComputedStyle(document.body);
   const redraw = () => {
     width = widthNow();
-    chart.resize({width, height});
-    chart.setOption({animation: false, textStyle: {fontFamily: "inherit"}, ...option(width)});
+    holder.style.height = `${height(width)}px`;
+    chart.resize({width, height: height(width)});
+    chart.setOption({animation: false, textStyle: {fontFamily}, ...option(width)});
     chart.getZr().flush();
   };
   redraw();
@@ -124,15 +125,14 @@ export function lineChartFigure(chart) {
     legend: hiddenLegend(names),
     tooltip: tooltip({trigger: isScatter ? "item" : "axis",
       formatter: (params) => lineTip(chart, seriesLooks(chart.series), params)}),
-    xAxis: {...axisOption(chart, "x"), name: axisText(chart.x), nameLocation: "middle",
-      nameTextStyle: {color: colours().quiet, fontSize: 12}},
+    xAxis: axisOption(chart, "x"),
     yAxis: axisOption(chart, "y"),
     series: lineChartSeries(chart),
   });
   const label = `${chart.title}. ${axisText(chart.y)} over ${axisText(chart.x)} for ${chart.series.map(legendText).join(", ")}.`;
   return figure("line", chart, {label, table: () => pointsTable(chart),
     above: element("div", {}, legend, element("p", {class: "axis"}, axisText(chart.y)))},
-  (holder) => connect(draw(holder, 340, option)));
+  (holder) => connect(draw(holder, () => 340, option)));
 }
 
 function tilesTable(map) {
@@ -155,7 +155,7 @@ export function heatMapFigure(map) {
   const label = `${map.title}. ${axisText(map.value)} for ${map.rows.length} by ${map.columns.length} tiles.`;
   return figure("map", map, {label, table: () => tilesTable(map), wide: true, minWidth: heatMapWidth(map),
     above: element("p", {class: "axis"}, axisText(map.value))},
-  (holder) => draw(holder, heatMapHeight(map),
+  (holder) => draw(holder, (width) => heatMapHeight(map, width),
     (width) => ({...heatMapOption(map, width), tooltip: tooltip({trigger: "item", formatter})})));
 }
 
@@ -173,7 +173,7 @@ export function timelineFigure(timeline) {
   const label = `${timeline.title}. ${timeline.spans.length} spans on ${timeline.lanes.length} lanes.`;
   const hint = element("p", {class: "hint"}, "Drag the slider's ends, or turn the wheel with Ctrl held, to zoom.");
   return figure("timeline", timeline, {label, wide: true, above: legend, below: hint},
-    (holder) => connect(draw(holder, timelineHeight(timeline), () => ({...timelineOption(timeline),
+    (holder) => connect(draw(holder, () => timelineHeight(timeline), () => ({...timelineOption(timeline),
       legend: hiddenLegend(timeline.groups), tooltip: tooltip({trigger: "item", formatter})}),
     timeline.spans.length > kMostElements ? "canvas" : "svg")));
 }

@@ -7,12 +7,13 @@ const superscript = (exponent) => (exponent < 0 ? "⁻" : "") +
 // The document's numbers: null is none (NaN), "inf" and "-inf" are infinities.
 export const isNumber = (value) => typeof value === "number";
 
-export function numberText(value, digits = 4) {
+// From `most` on, and below a thousandth, numbers are told by their powers of ten.
+export function numberText(value, digits = 4, most = 1e9) {
   if (value === "inf") return "∞";
   if (value === "-inf") return "−∞";
   if (!isNumber(value)) return "–";
   const size = Math.abs(value);
-  if (size !== 0 && (size < 1e-3 || size >= 1e9)) {
+  if (size !== 0 && (size < 1e-3 || size >= most)) {
     const [mantissa, exponent] = value.toExponential(digits - 1).split("e");
     const factor = Number(mantissa) === 1 ? "" : `${String(Number(mantissa)).replace("-", "−")}·`;
     return `${factor}10${superscript(Number(exponent))}`;
@@ -23,12 +24,8 @@ export function numberText(value, digits = 4) {
 
 export const withUnit = (text, unit) => (unit ? `${text} ${unit}` : text);
 
-// Powers of ten from 10⁵ on are told by their exponent: there is little room at an axis.
-export function tickText(value) {
-  const exponent = Math.round(Math.log10(Math.abs(value)));
-  const isPower = value !== 0 && Math.abs(Math.abs(value) / 10 ** exponent - 1) < 1e-9;
-  return isPower && (exponent >= 5 || exponent <= -3) ? `10${superscript(exponent)}` : numberText(value, 3);
-}
+// There is little room at an axis.
+export const tickText = (value) => numberText(value, 3, 1e6);
 
 export const axisText = ({label, unit}) => (unit ? `${label} (${unit})` : label);
 

@@ -4,9 +4,14 @@ import {isNumber, numberText} from "./format.js";
 import {colours, heat} from "./theme.js";
 
 const kGap = 2;
-export const heatMapHeight = (map) => Math.max(map.rows.length * 34, 90) + 150;
+const kNamesWidth = 130;
+const longestName = (names) => Math.max(...names.map((name) => name.length), 1);
+const areTurned = (map, width) => longestName(map.columns) * 7 > (width - kNamesWidth) / map.columns.length;
+// Besides the rows: turned names take their length, then come the axis's name and the scale.
+export const heatMapHeight = (map, width) => map.rows.length * 34 + 110 +
+  (areTurned(map, width) ? Math.min(longestName(map.columns) * 5, 80) : 0);
 // Below, the map scrolls on its own.
-export const heatMapWidth = (map) => map.columns.length * 34 + 130;
+export const heatMapWidth = (map) => map.columns.length * 34 + kNamesWidth;
 
 const canShow = (map, value) => isNumber(value) && (!map.value.log || value > 0);
 const onScale = (map, value) => (map.value.log ? Math.log10(value) : value);
@@ -35,14 +40,13 @@ function tileItem(map, theme) {
   };
 }
 
-function nameAxis(names, label, theme, width, isColumn) {
-  const longest = Math.max(...names.map((name) => name.length), 1);
-  const turned = isColumn && longest * 7 > (width - 130) / names.length;
+function nameAxis(names, label, theme, width, isColumn, turned) {
   return {
     type: "category",
     data: names,
     name: label,
     nameLocation: "middle",
+    nameGap: isColumn && !turned ? 28 : undefined,
     nameTextStyle: {color: theme.quiet, fontSize: 12},
     inverse: !isColumn,
     axisLabel: {color: theme.ink, fontSize: 12, interval: 0, rotate: turned ? 40 : 0, overflow: "truncate",
@@ -59,9 +63,9 @@ export function heatMapOption(map, width) {
     .map((value) => onScale(map, value));
   const [min, max] = values.length ? [Math.min(...values), Math.max(...values)] : [0, 1];
   return {
-    grid: {left: 8, right: 12, top: 8, bottom: 64, outerBoundsMode: "same", outerBoundsContain: "all"},
-    xAxis: nameAxis(map.columns, map.column_label, theme, width, true),
-    yAxis: nameAxis(map.rows, map.row_label, theme, width, false),
+    grid: {left: 8, right: 12, top: 8, bottom: 56, outerBoundsMode: "same", outerBoundsContain: "all"},
+    xAxis: nameAxis(map.columns, map.column_label, theme, width, true, areTurned(map, width)),
+    yAxis: nameAxis(map.rows, map.row_label, theme, width, false, false),
     visualMap: {
       type: "continuous",
       min,

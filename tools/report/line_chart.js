@@ -1,6 +1,6 @@
 // Curves over numbers: what ECharts is told of a LineChart.
 
-import {isNumber, tickText} from "./format.js";
+import {axisText, isNumber, tickText} from "./format.js";
 import {colours, symbols} from "./theme.js";
 
 // How each series looks, also in legends: the same in every place.
@@ -78,18 +78,20 @@ export function axisOption(chart, side) {
     axisLine: {show: side === "x", onZero: false, lineStyle: {color: theme.line}},
     axisTick: {...own.axisTick, show: side === "x", lineStyle: {color: theme.line}},
     splitLine: {...own.splitLine, show: true, lineStyle: {color: theme.faint}},
+    ...(side === "x" && {name: axisText(chart.x), nameLocation: "middle", nameGap: 28,
+      nameTextStyle: {color: theme.quiet, fontSize: 12}, nameTruncate: {maxWidth: 300}}),
     axisPointer: {lineStyle: {color: theme.quiet, type: "solid"}, label: {show: false}},
   };
 }
 
 function curve(one, look, chart) {
   const many = one.points.length > 60;
-  const marks = {symbol: look.symbol === undefined ? "none" : symbols[look.symbol], symbolSize: many ? 4 : 8};
+  const marks = {symbol: look.symbol === undefined ? "none" : symbols[look.symbol], symbolSize: many ? 5 : 8};
   const data = one.points.map(({x, y}) =>
     [canShow(x, chart.x) ? x : "-", canShow(y, chart.y) ? y : "-"]);
   const itemStyle = {color: look.hollow ? colours().paper : look.colour, borderColor: look.colour,
     borderWidth: look.hollow ? 2 : 0};
-  const common = {name: one.name, data, ...marks, itemStyle, emphasis: {scale: 1.3}, z: 3};
+  const common = {name: one.name, data, ...marks, itemStyle, emphasis: {scale: 1.3}, z: one.style === "measured" ? 4 : 3};
   if (one.style === "scatter") return {...common, type: "scatter"};
   return {
     ...common,
@@ -110,8 +112,8 @@ function errorBars(one, look, chart) {
     const [, bottom] = api.coord([api.value(0), api.value(1)]);
     const line = (x1, y1, x2, y2) => ({type: "line", shape: {x1, y1, x2, y2},
       style: {stroke: look.colour, lineWidth: 1.5}});
-    return {type: "group", children: [line(x, top, x, bottom), line(x - 4, top, x + 4, top),
-      line(x - 4, bottom, x + 4, bottom)]};
+    return {type: "group", children: [line(x, top, x, bottom), line(x - 6, top, x + 6, top),
+      line(x - 6, bottom, x + 6, bottom)]};
   };
   return {name: one.name, type: "custom", data, renderItem, encode: {x: 0, y: [1, 2]}, silent: true, clip: true, z: 2};
 }

@@ -5,7 +5,7 @@ import {numberText, timeScale} from "./format.js";
 import {colours} from "./theme.js";
 
 const laneHeight = (timeline) => Math.min(28, Math.max(7, 640 / timeline.lanes.length));
-export const timelineHeight = (timeline) => Math.round(timeline.lanes.length * laneHeight(timeline)) + 110;
+export const timelineHeight = (timeline) => Math.round(timeline.lanes.length * laneHeight(timeline)) + 90;
 
 export const timelineScale = ({spans}) =>
   timeScale(spans.reduce((longest, {start, duration}) => Math.max(longest, start + duration), 0));
@@ -37,11 +37,12 @@ export function timelineOption(timeline) {
   const theme = colours();
   const {unit, perSecond} = timelineScale(timeline);
   return {
-    grid: {left: 8, right: 20, top: 8, bottom: 56, outerBoundsMode: "same", outerBoundsContain: "all"},
+    grid: {left: 8, right: 20, top: 8, bottom: 34, outerBoundsMode: "same", outerBoundsContain: "all"},
     xAxis: {
       type: "value",
       name: `time (${unit})`,
       nameLocation: "middle",
+      nameGap: 28,
       nameTextStyle: {color: theme.quiet, fontSize: 12},
       min: 0,
       max: "dataMax",
