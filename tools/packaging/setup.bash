@@ -27,9 +27,12 @@ stage() {
   printf '\n== %s (%ds)\n' "$stage" "$SECONDS"
 }
 
+# The page of study reports is built with npm. Where npm is not Debian's, Debian's could not be installed beside it.
+report_packages=()
+command -v npm >/dev/null || report_packages=(npm)
 readonly build_packages=(
   g++ cmake ninja-build libtbb-dev libhwy-dev libcli11-dev nlohmann-json3-dev libfmt-dev
-  libboost-iostreams-dev zlib1g-dev liblzma-dev libzstd-dev)
+  libboost-iostreams-dev zlib1g-dev liblzma-dev libzstd-dev "${report_packages[@]}")
 readonly test_packages=(libgtest-dev libeigen3-dev librapidcheck-dev libbenchmark-dev)
 
 # install_packages <package>...: asks apt for those that are missing, and for nothing when none is.

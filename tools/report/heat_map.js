@@ -8,7 +8,7 @@ const kNamesWidth = 130;
 const longestName = (names) => Math.max(...names.map((name) => name.length), 1);
 const areTurned = (map, width) => longestName(map.columns) * 7 > (width - kNamesWidth) / map.columns.length;
 // Besides the rows: turned names take their length, then come the axis's name and the scale.
-export const heatMapHeight = (map, width) => map.rows.length * 34 + 110 +
+export const heatMapHeight = (map, width) => map.rows.length * 34 + 124 +
   (areTurned(map, width) ? Math.min(longestName(map.columns) * 5, 80) : 0);
 // Below, the map scrolls on its own.
 export const heatMapWidth = (map) => map.columns.length * 34 + kNamesWidth;

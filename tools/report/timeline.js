@@ -2,7 +2,7 @@
 
 import {graphic} from "echarts/core";
 import {numberText, timeScale} from "./format.js";
-import {colours} from "./theme.js";
+import {colours, isPrinting} from "./theme.js";
 
 const laneHeight = (timeline) => Math.min(28, Math.max(7, 640 / timeline.lanes.length));
 export const timelineHeight = (timeline) => Math.round(timeline.lanes.length * laneHeight(timeline)) + 90;
@@ -28,13 +28,14 @@ function spanItem(colour) {
     const shape = graphic.clipRectByRect({x, y: y - height / 2, width: Math.max(end - x, 0.6), height},
       {x: area.x, y: area.y, width: area.width, height: area.height});
     // Where spans touch, a seam tells them apart.
-    const seam = shape && shape.width > 4 ? {stroke: colours().paper, lineWidth: 0.5} : {};
+    const seam = shape && shape.width > 8 ? {stroke: colours().paper, lineWidth: 0.5} : {};
     return shape && {type: "rect", shape, style: {fill: colour, ...seam}, emphasis: {style: {opacity: 0.7}}};
   };
 }
 
 export function timelineOption(timeline) {
   const theme = colours();
+  const lane = laneHeight(timeline);
   const {unit, perSecond} = timelineScale(timeline);
   return {
     grid: {left: 8, right: 20, top: 8, bottom: 34, outerBoundsMode: "same", outerBoundsContain: "all"},
@@ -56,7 +57,8 @@ export function timelineOption(timeline) {
       type: "category",
       data: timeline.lanes,
       inverse: true,
-      axisLabel: {color: theme.ink, fontSize: 12, overflow: "truncate", width: 110},
+      axisLabel: {color: theme.ink, fontSize: lane < 14 ? 10 : 12, overflow: "truncate", width: 110,
+        interval: Math.ceil(12 / lane) - 1},
       axisLine: {show: false},
       axisTick: {show: false},
       splitLine: {show: false},
@@ -64,7 +66,7 @@ export function timelineOption(timeline) {
     // The wheel alone scrolls the page.
     dataZoom: [
       {type: "inside", filterMode: "weakFilter", zoomOnMouseWheel: "ctrl", moveOnMouseWheel: false},
-      {type: "slider", filterMode: "weakFilter", height: 18, bottom: 6, showDetail: false, brushSelect: false,
+      {type: "slider", show: !isPrinting(), filterMode: "weakFilter", height: 18, bottom: 6, showDetail: false, brushSelect: false,
         borderColor: theme.line, fillerColor: `${theme.series[0]}33`, backgroundColor: theme.faint,
         dataBackground: {lineStyle: {opacity: 0}, areaStyle: {opacity: 0}},
         selectedDataBackground: {lineStyle: {opacity: 0}, areaStyle: {opacity: 0}}},
