@@ -1,5 +1,5 @@
 // The `sweepgrid` program. Exit status: 0 all is well, 1 a verification failed or an invariant is broken, 2 bad usage,
-// file or scene.
+// file or scene, 130 a study was interrupted.
 
 #include <charconv>
 #include <cmath>
@@ -18,12 +18,14 @@
 #include "cli/cell_names.hpp"
 #include "cli/info_command.hpp"
 #include "cli/run_command.hpp"
+#include "cli/study_command.hpp"
 #include "scenes/generator_params.hpp"
+#include "study/study_options.hpp"
 
 namespace sweepgrid {
 namespace {
 
-enum ExitStatus { kWell = 0, kNotVerified = 1, kBadInput = 2 };
+enum ExitStatus { kWell = 0, kNotVerified = 1, kBadInput = 2, kInterrupted = 130 };
 
 constexpr const char* kScenesHelp =
     "Recordings (.aabbs, LAMMPS text dumps; bare or .gz, .xz, .zst) or generated scenes such as uniform:n=1000";
@@ -132,19 +134,23 @@ int run_main(int argc, char** argv) {
   CLI::App app("Exact, event-based broad-phase collision detection, run over scenes");
   app.set_version_flag("--version", version_text());
   app.require_subcommand(1);
-  app.footer(generator_help() + "Exit status: 0 all is well, 1 a verification failed, 2 bad usage, file or scene.");
+  app.footer(generator_help() +
+             "Exit status: 0 all is well, 1 a verification failed, 2 bad usage, file or scene, "
+             "130 a study was interrupted.");
   RunOptions run_options;
   RunTexts run_texts;
   const CLI::App* run = add_run(app, run_options, run_texts);
   InfoOptions info_options;
   CLI::App* info = app.add_subcommand("info", "Read scenes to their end and describe them");
   add_scene_options(*info, info_options);
+  const StudyCommand study(app);
   try {
     app.parse(argc, argv);
     complete(run_options, run_texts);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? kWell : kBadInput;
   }
+  if (study.parsed()) return study.run() ? kWell : kNotVerified;
   check_scenes(run->parsed() ? run_options.scenes : info_options.scenes);
   if (run->parsed()) return run_command(run_options) ? kWell : kNotVerified;
   info_command(info_options);
@@ -157,6 +163,9 @@ int run_main(int argc, char** argv) {
 int main(int argc, char** argv) {
   try {
     return sweepgrid::run_main(argc, argv);
+  } catch (const sweepgrid::study::Interrupted& interrupted) {
+    fmt::print(stderr, "sweepgrid: {}\n", interrupted.what());
+    return sweepgrid::kInterrupted;
   } catch (const std::exception& error) {
     const std::string_view message = error.what();
     fmt::print(stderr, "{}{}\n", message.starts_with("sweepgrid: ") ? "" : "sweepgrid: ", message);

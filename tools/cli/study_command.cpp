@@ -1,0 +1,48 @@
+#include "cli/study_command.hpp"
+
+#include <algorithm>
+
+#include "study/figures/figures_study.hpp"
+#include "study/study_options.hpp"
+
+namespace sweepgrid {
+namespace {
+
+// The options that all studies have.
+void add_study_options(CLI::App& command, study::StudyOptions& options) {
+  command.add_option("--out", options.out, "Folder to write into (default: the current one)")->type_name("DIR");
+  command.add_flag("--quick", options.quick, "A rough answer within a minute");
+  CLI::Option* resume = command.add_flag_callback(
+      "--resume", [&options] { options.points = study::Points::kResume; },
+      "Insist on the finished points of an earlier run; they are taken without this, too, where there are any");
+  command
+      .add_flag_callback(
+          "--fresh", [&options] { options.points = study::Points::kFresh; }, "Measure all points anew")
+      ->excludes(resume);
+}
+
+}  // namespace
+
+StudyCommand::StudyCommand(CLI::App& app)
+    : command_(app.add_subcommand("study", "Measure, and write a report as JSON and as one page of HTML")) {
+  command_->require_subcommand(1);
+  add_figures();
+}
+
+bool StudyCommand::run() const {
+  const auto study = std::find_if(studies_.begin(), studies_.end(),
+                                  [](const Study& candidate) { return candidate.command->parsed(); });
+  return study->run();
+}
+
+void StudyCommand::add_figures() {
+  CLI::App* command = command_->add_subcommand("figures", "The figures and claims of the paper, beside this machine");
+  const auto options = std::make_shared<study::FiguresOptions>();
+  add_study_options(*command, options->study);
+  command->add_option("--figure", options->figures, "Only these figures of the paper: 2, 8, 9, 10, 11")
+      ->type_name("N...")
+      ->check(CLI::IsMember(study::figure_numbers()).description(""));
+  studies_.push_back({command, [options] { return study::figures_study(*options); }});
+}
+
+}  // namespace sweepgrid
