@@ -24,7 +24,8 @@ struct Config {
   /// Kind of the cells and its parameters.
   CellOptions cell;
   /// Edge of the finest cells in world units, positive and finite; absent: derived from the boxes, and derived anew
-  /// when the scene changes. With witness counts, doubled while the grid would have more than 2^24 cells.
+  /// when the scene changes. With witness counts, doubled while the grid would have more than 2^24 cells if given, more
+  /// than 4096 and one for each object if derived.
   std::optional<double> cell_size;
   /// Objects per cell that a derived cell size aims at (centres of boxes beside the object's own), at least 1; absent:
   /// what costs least by a model of the kind of cells.

@@ -65,7 +65,9 @@ class EngineCore {
   using GridType = Grid<Scalar, Dim>;
   using LevelsType = Levels<Scalar, Dim>;
   using Record = typename Objects::Record;
-  static constexpr double kMaxCells = double{1 << 24};  // with witness counts
+  // With witness counts: cells of a given size, and of a derived size beside one for each object.
+  static constexpr double kMaxCells = double{1 << 24};
+  static constexpr double kFewCells = 4096;
 
   /// A block of objects as it is routed.
   struct RouteBlock {

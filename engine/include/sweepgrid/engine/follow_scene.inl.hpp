@@ -55,12 +55,15 @@ template <class Scalar, int Dim>
 void EngineCore<Scalar, Dim>::follow_with_counts() {
   if (gridded_ && !regrid_.outgrown(objects_.size()) && !regrid_.crowded()) return;
   const auto result = fit(sample(GridFit<Scalar, Dim>::sample_size(objects_.size())));
-  if (gridded_ && !regrid_.outgrown(objects_.size()) && result.cell_size > 0.75 * levels_.cell_size() &&
+  // A box over everything is in all cells, so there must not be many more of them than objects.
+  const double most_cells = config_.cell_size ? kMaxCells : kFewCells + static_cast<double>(objects_.size());
+  const auto spec = GridFit<Scalar, Dim>::bounded(result, most_cells);
+  if (gridded_ && !regrid_.outgrown(objects_.size()) && spec.cell_size() > 0.75 * levels_.cell_size() &&
       result.share_within(fitted_) > 0.8) {
     return regrid_.resign();
   }
   fitted_ = result;
-  levels_.start_single(GridFit<Scalar, Dim>::bounded(result, kMaxCells), config_.cell, grid_shards());
+  levels_.start_single(spec, config_.cell, grid_shards());
   for (ObjectId object = 0; object < objects_.bound(); ++object) objects_.record(object).grid = levels_.finest();
   regrid_.fitted(result.met, objects_.size());
   gridded_ = true;

@@ -1,0 +1,87 @@
+// Settings: what is refused, and what each does.
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+
+#include "engine_client.hpp"
+
+namespace sweepgrid {
+namespace {
+
+TEST(EngineConfig, RefusesWhatIsOutOfRangeAndNamesIt) {
+  const auto refused = [](const std::function<void(Config2&)>& change) {
+    Config2 config = serial();
+    change(config);
+    return refusal([&] { Engine2 engine(config); });
+  };
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double infinity = std::numeric_limits<double>::infinity();
+  for (const int population : {0, -1, std::numeric_limits<int>::min()}) {
+    EXPECT_TRUE(has(refused([&](Config2& c) { c.cell_population = population; }), "cell_population"));
+  }
+  for (const double size : {0.0, -0.0, -1.0, nan, infinity, -infinity}) {
+    EXPECT_TRUE(has(refused([&](Config2& c) { c.cell_size = size; }), "cell_size"));
+  }
+  EXPECT_TRUE(has(refused([](Config2& c) { c.threads = -1; }), "threads"));
+  EXPECT_TRUE(has(refused([](Config2& c) {
+                    c.cell.kind = CellKind::kSegmented;
+                    c.cell.segment_capacity = 3;
+                  }),
+                  "segment_capacity"));
+  EXPECT_TRUE(has(refused([](Config2& c) { c.cell.kind = static_cast<CellKind>(17); }), "kind"));
+}
+
+TEST(EngineConfig, AGivenCellSizeIsKeptButForBoundedGridsOfTooManyCells) {
+  for (const Reduction reduction : {Reduction::kSingleReporter, Reduction::kWitnessCounts}) {
+    Config2 config = serial();
+    config.cell_size = 1e-9;
+    config.reduction = reduction;
+    Engine2 engine(config);
+    for (std::uint64_t key = 0; key < 100; ++key) engine.insert(key, square(static_cast<float>(key), 0, 0));
+    EXPECT_TRUE(engine.step().begins.empty());
+    engine.validate();
+    if (reduction == Reduction::kSingleReporter) {
+      EXPECT_EQ(engine.stats().cell_size, 1e-9);
+    } else {
+      EXPECT_GE(engine.stats().cell_size, 100.0 / (1 << 24));
+      EXPECT_LT(engine.stats().cell_size, 300.0 / (1 << 24));
+    }
+  }
+}
+
+TEST(EngineConfig, AnExecutorMayServeManyEngines) {
+  Config2 config;
+  config.executor = make_executor(3);
+  Engine2 first(config);
+  Engine2 second(config);
+  for (std::uint64_t key = 0; key < 100; ++key) {
+    first.insert(key, square(0.5F * key, 0));
+    second.insert(key, square(0.5F * key, 0));
+  }
+  Events<std::uint64_t> events_of_first;
+  std::thread other([&] { events_of_first = first.step(); });
+  const auto events_of_second = second.step();
+  other.join();
+  EXPECT_EQ(events_of_first, events_of_second);
+  EXPECT_EQ(events_of_second.begins.size(), 99u + 98u);
+}
+
+TEST(EngineConfig, ScenesOfEveryScaleWork) {
+  for (const double unit : {5e-324, 1e-300, 1e-200, 1e-30, 1e30, 1e200, 1e307}) {
+    Config<double, 2> config;
+    config.threads = 1;
+    config.cell_population = 1;
+    Engine<double, 2> engine(config);
+    for (std::uint64_t i = 0; i < 10; ++i) {
+      const double x = static_cast<double>(i);
+      engine.insert(i, Box<double, 2>({x * unit, 0}, {(x + 1) * unit, unit}));
+    }
+    EXPECT_EQ(engine.step().begins.size(), 9u) << unit;
+    engine.validate();
+  }
+}
+
+}  // namespace
+}  // namespace sweepgrid
