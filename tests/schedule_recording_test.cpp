@@ -1,6 +1,8 @@
 #include <sweepgrid/scheduler/recording_executor.hpp>
 
 #include <atomic>
+#include <chrono>
+#include <ctime>
 #include <memory>
 #include <stdexcept>
 #include <thread>
@@ -40,6 +42,32 @@ TEST(RecordingExecutor, RecordsLoopsInOrderUntilStopped) {
     }
     EXPECT_GE(trace[103].duration_ns, 2'000'000);
     EXPECT_TRUE(executor.stop().empty());
+  }
+}
+
+TEST(RecordingExecutor, ByProcessorTimeLeavesOutWhatOthersTake) {
+  const auto executor = std::make_shared<RecordingExecutor>(make_serial_executor(), 4, RecordingClock::kThread);
+  const auto sleep_then_work = [](std::size_t task) {
+    if (task == 0) std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    if (task == 1) {
+      const std::clock_t start = std::clock();
+      while (std::clock() - start < CLOCKS_PER_SEC / 100) {
+      }
+    }
+  };
+  executor->start();
+  executor->for_each(2, sleep_then_work);
+  TaskTrace loop = executor->stop();
+  StageGraph graph(executor);
+  graph.add(
+      "only", {}, [](std::vector<std::uint64_t>& costs) { costs.assign(2, 1); }, sleep_then_work);
+  graph.record(true);
+  graph.run();
+  for (const TaskTrace& trace : {loop, graph.trace()}) {
+    ASSERT_EQ(trace.size(), 2U);
+    EXPECT_LT(trace[0].duration_ns, 100'000'000);
+    EXPECT_GE(trace[0].duration_ns, 0);
+    EXPECT_GE(trace[1].duration_ns, 5'000'000);
   }
 }
 

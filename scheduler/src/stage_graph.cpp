@@ -48,7 +48,9 @@ struct Stage {
 
 struct StageGraph::Impl {
   explicit Impl(std::shared_ptr<Executor> chosen)
-      : executor(std::move(chosen)), arena_executor(arena_behind(*executor)) {
+      : executor(std::move(chosen)),
+        arena_executor(arena_behind(*executor)),
+        recorder(dynamic_cast<RecordingExecutor*>(executor.get())) {
     // A flow graph runs where it was made.
     if (arena_executor != nullptr) arena_executor->execute([this] { graph.emplace(); });
   }
@@ -59,13 +61,21 @@ struct StageGraph::Impl {
   void collect_trace();
 
   std::shared_ptr<Executor> executor;
-  ArenaExecutor* arena_executor;  ///< null: stages run one after another, in the order in which they were added
+  ArenaExecutor* arena_executor;      ///< null: stages run one after another, in the order in which they were added
+  const RecordingExecutor* recorder;  ///< whose clock counts; null: the wall clock does
   std::optional<oneapi::tbb::flow::graph> graph;
   std::vector<std::unique_ptr<Stage>> stages;
   bool recording = false;
   TaskTrace trace;
 
-  Clock::time_point start;
+  [[nodiscard]] std::int64_t now() const {
+    return recorder != nullptr ? recorder->now() : nanoseconds(Clock::now().time_since_epoch());
+  }
+  [[nodiscard]] std::int64_t since(std::int64_t begin) const {
+    return recorder != nullptr ? recorder->since(begin) : now() - begin;
+  }
+
+  std::int64_t start = 0;
   std::atomic<bool> failed = false;
   std::exception_ptr failure;  ///< written by the one that set `failed`, read after the run
 };
@@ -97,10 +107,9 @@ void StageGraph::Impl::run_tasks(Stage& stage) {
 
 void StageGraph::Impl::run_recorded(StageId id, std::uint32_t task) {
   Stage& stage = *stages[id];
-  const Clock::time_point begin = Clock::now();
+  const std::int64_t begin = now();
   stage.body(task);
-  stage.records[task] = {
-      id, task, stage.costs[task], executor->worker(), nanoseconds(begin - start), nanoseconds(Clock::now() - begin)};
+  stage.records[task] = {id, task, stage.costs[task], executor->worker(), begin - start, since(begin)};
 }
 
 void StageGraph::Impl::collect_trace() {
@@ -154,7 +163,7 @@ void StageGraph::run() {
     stage->seconds = 0;
   }
   impl.failed.store(false, std::memory_order_relaxed);
-  impl.start = Clock::now();
+  impl.start = impl.now();
 
   if (impl.graph) {
     impl.executor->execute([&impl] {

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "study/figures/figures_study.hpp"
+#include "study/scaling/scaling_study.hpp"
 #include "study/study_options.hpp"
 
 namespace sweepgrid {
@@ -27,6 +28,7 @@ StudyCommand::StudyCommand(CLI::App& app)
     : command_(app.add_subcommand("study", "Measure, and write a report as JSON and as one page of HTML")) {
   command_->require_subcommand(1);
   add_figures();
+  add_scaling();
 }
 
 bool StudyCommand::run() const {
@@ -43,6 +45,25 @@ void StudyCommand::add_figures() {
       ->type_name("N...")
       ->check(CLI::IsMember(study::figure_numbers()).description(""));
   studies_.push_back({command, [options] { return study::figures_study(*options); }});
+}
+
+void StudyCommand::add_scaling() {
+  CLI::App* command = command_->add_subcommand("scaling", "How steps scale with threads: measured, and simulated");
+  const auto options = std::make_shared<study::ScalingOptions>();
+  add_study_options(*command, options->study);
+  command->add_option("SCENE", options->scenes, "As of `sweepgrid run` (default: five generated ones)");
+  command->add_option("--threads", options->threads, "Numbers of threads to measure (default: 1, 2, 4 ... all)")
+      ->type_name("N,...")
+      ->delimiter(',')
+      ->check(CLI::PositiveNumber.description(""));
+  command->add_option("--simulate", options->simulate, "Numbers of workers to predict (default: 1, 2, 4 ... 256)")
+      ->type_name("N,...")
+      ->delimiter(',')
+      ->check(CLI::Range(1, 4096).description(""));
+  command->add_flag("--weak", options->weak, "Also with objects that grow with the threads; generated scenes only");
+  command->add_option("--trace", options->trace, "Write the tasks of a step to FILE, for Perfetto or chrome://tracing")
+      ->type_name("FILE");
+  studies_.push_back({command, [options] { return study::scaling_study(*options); }});
 }
 
 }  // namespace sweepgrid

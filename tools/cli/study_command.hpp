@@ -27,6 +27,7 @@ class StudyCommand {
   };
 
   void add_figures();
+  void add_scaling();
 
   CLI::App* command_;
   std::vector<Study> studies_;
