@@ -49,6 +49,9 @@ async function open(width, height, colorScheme = "light") {
 }
 
 const marksOf = (page, id) => page.locator(`#${id} .chart svg path, #${id} .chart svg rect`).count();
+// Charts are drawn again when the browser next paints.
+const painted = (page) => page.evaluate(() =>
+  new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done()))));
 const picture = (page, name) => page.screenshot({path: join(folder, `${name}.png`), fullPage: true});
 const tests = [];
 const test = (name, width, run, scheme) => tests.push({name, width, run, scheme});
@@ -98,9 +101,11 @@ test("legends switch series off and on, with the keyboard too", 1280, async (pag
     const button = page.locator(`#${id} .legend button`).nth(1);
     await button.focus();
     await page.keyboard.press("Enter");
+    await painted(page);
     assert.equal(await button.getAttribute("aria-pressed"), "false");
     assert.ok(await marksOf(page, id) < before, `${id}: still ${before} marks`);
     await button.click();
+    await painted(page);
     assert.equal(await button.getAttribute("aria-pressed"), "true");
     assert.equal(await marksOf(page, id), before);
   }
@@ -108,8 +113,10 @@ test("legends switch series off and on, with the keyboard too", 1280, async (pag
 
 test("a series that is off stays off when colours change", 1280, async (page) => {
   await page.locator("#growth .legend button").first().click();
+  await painted(page);
   const before = await marksOf(page, "growth");
   await page.locator("#theme").click();
+  await painted(page);
   assert.equal(await marksOf(page, "growth"), before);
 });
 
@@ -160,6 +167,7 @@ test("timelines zoom", 1280, async (page) => {
 
 test("numbers behind a chart are there as a table", 1280, async (page) => {
   await page.locator("#speed-up summary").click();
+  await page.locator("#speed-up tbody tr").first().waitFor();
   const points = all("charts")[0].series.flatMap(({points}) => points);
   assert.equal(await page.locator("#speed-up tbody tr").count(), points.length);
 });
@@ -182,10 +190,12 @@ test("dark as the system asks, and by the button", 1280, async (page) => {
   const dark = [await background(page), await axisInk(page)];
   await picture(page, "desktop-dark");
   await page.locator("#theme").click();
+  await painted(page);
   const light = [await background(page), await axisInk(page)];
   assert.notEqual(dark[0], light[0]);
   assert.notEqual(dark[1], light[1]);
   await page.locator("#theme").click();
+  await painted(page);
   assert.deepEqual([await background(page), await axisInk(page)], dark);
 }, "dark");
 

@@ -25,11 +25,11 @@ function spanItem(colour) {
     const [end] = api.coord([api.value(2), api.value(0)]);
     const height = api.size([0, 1])[1] * 0.8;
     const area = params.coordSys;
-    const shape = graphic.clipRectByRect({x, y: y - height / 2, width: Math.max(end - x, 0.6), height},
+    // Where spans touch, a gap tells them apart.
+    const width = Math.max((end - x) * 0.88, end - x - 1, 0.5);
+    const shape = graphic.clipRectByRect({x, y: y - height / 2, width, height},
       {x: area.x, y: area.y, width: area.width, height: area.height});
-    // Where spans touch, a seam tells them apart.
-    const seam = shape && shape.width > 8 ? {stroke: colours().paper, lineWidth: 0.5} : {};
-    return shape && {type: "rect", shape, style: {fill: colour, ...seam}, emphasis: {style: {opacity: 0.7}}};
+    return shape && {type: "rect", shape, style: {fill: colour}, emphasis: {style: {opacity: 0.7}}};
   };
 }
 
