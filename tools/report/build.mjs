@@ -38,7 +38,8 @@ const parts = {
   licences: escaped(licences()),
   chart_library: `Apache ECharts ${version}`,
 };
-const page = readFileSync("page.html", "utf8").replace(/@(style|script|licences|chart_library)@/g, (_, part) => parts[part]);
+const page = readFileSync("page.html", "utf8")
+  .replace(/@(style|script|licences|chart_library)@/g, (_, part) => parts[part]);
 for (const mark of ["@report_title@", "@report_json@"]) {
   if (page.split(mark).length !== 2) throw new Error(`page.html must hold ${mark} once`);
 }

@@ -35,7 +35,8 @@ const tip = (head, rows) => element("div", {class: "tip"}, head && element("b", 
 function draw(holder, height, option, renderer = "svg") {
   const widthNow = () => (isPrinting() ? kPrintWidth : holder.clientWidth || kPrintWidth);
   let width = widthNow();
-  const chart = init(holder, null, {renderer, width, height: height(width), devicePixelRatio: Math.max(2, devicePixelRatio)});
+  const chart = init(holder, null,
+    {renderer, width, height: height(width), devicePixelRatio: Math.max(2, devicePixelRatio)});
   const {fontFamily} = getComputedStyle(document.body);
   const redraw = () => {
     width = widthNow();
@@ -129,7 +130,8 @@ export function lineChartFigure(chart) {
     yAxis: axisOption(chart, "y"),
     series: lineChartSeries(chart),
   });
-  const label = `${chart.title}. ${axisText(chart.y)} over ${axisText(chart.x)} for ${chart.series.map(legendText).join(", ")}.`;
+  const label = `${chart.title}. ${axisText(chart.y)} over ${axisText(chart.x)} for ` +
+    `${chart.series.map(legendText).join(", ")}.`;
   return figure("line", chart, {label, table: () => pointsTable(chart),
     above: element("div", {}, legend, element("p", {class: "axis"}, axisText(chart.y)))},
   (holder) => connect(draw(holder, () => 340, option)));

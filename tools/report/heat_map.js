@@ -31,10 +31,11 @@ function tileItem(map, theme) {
     const text = tile.mark || (shown && width >= 44 ? numberText(tile.value, 3) : "");
     return {
       type: "rect",
-      shape: {x: x - width / 2 + kGap / 2, y: y - height / 2 + kGap / 2, width: width - kGap, height: height - kGap, r: 3},
+      shape: {x: x - (width - kGap) / 2, y: y - (height - kGap) / 2, width: width - kGap, height: height - kGap, r: 3},
       style: {fill},
       emphasis: {style: {stroke: theme.ink, lineWidth: 2}},
-      textContent: text ? {type: "text", style: {text, fontSize: 12, fill: shown ? inkOn(fill) : theme.quiet}} : undefined,
+      textContent: text ?
+        {type: "text", style: {text, fontSize: 12, fill: shown ? inkOn(fill) : theme.quiet}} : undefined,
       textConfig: {position: "inside"},
     };
   };

@@ -91,7 +91,8 @@ function curve(one, look, chart) {
     [canShow(x, chart.x) ? x : "-", canShow(y, chart.y) ? y : "-"]);
   const itemStyle = {color: look.hollow ? colours().paper : look.colour, borderColor: look.colour,
     borderWidth: look.hollow ? 2 : 0};
-  const common = {name: one.name, data, ...marks, itemStyle, emphasis: {scale: 1.3}, z: one.style === "measured" ? 4 : 3};
+  const common = {name: one.name, data, ...marks, itemStyle, emphasis: {scale: 1.3},
+    z: one.style === "measured" ? 4 : 3};
   if (one.style === "scatter") return {...common, type: "scatter"};
   return {
     ...common,

@@ -47,11 +47,9 @@ function facts() {
     ["Compiler", [build.compiler, build.build_type, build.flags].filter(Boolean).join(", ")],
     ["Written", report.date.replace("T", " ").replace("Z", " UTC")],
   ];
-  const items = list.filter(([, text]) => text).map(([name, text]) =>
-    element("div", {}, element("dt", {}, name), element("dd", {}, text)));
-  if (report.command) {
-    items.push(element("div", {}, element("dt", {}, "Made by"), element("dd", {}, element("code", {}, report.command))));
-  }
+  if (report.command) list.push(["Made by", element("code", {}, report.command)]);
+  const items = list.filter(([, fact]) => fact).map(([name, fact]) =>
+    element("div", {}, element("dt", {}, name), element("dd", {}, fact)));
   return element("dl", {class: "facts"}, ...items);
 }
 
@@ -83,7 +81,8 @@ function contents() {
 }
 
 const head = element("header", {}, element("p", {class: "kind"}, "sweepgrid study"),
-  element("h1", {}, ...inline(report.title)), element("div", {class: "summary"}, ...paragraphs(report.summary)), facts(),
+  element("h1", {}, ...inline(report.title)), element("div", {class: "summary"}, ...paragraphs(report.summary)),
+  facts(),
   element("div", {class: "tools"}, button("save", "Save JSON", save), button("print", "Print", () => print()),
     themeButton()));
 document.getElementById("report").append(head, contents(), ...report.sections.map(sectionElement));

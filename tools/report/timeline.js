@@ -66,8 +66,8 @@ export function timelineOption(timeline) {
     // The wheel alone scrolls the page.
     dataZoom: [
       {type: "inside", filterMode: "weakFilter", zoomOnMouseWheel: "ctrl", moveOnMouseWheel: false},
-      {type: "slider", show: !isPrinting(), filterMode: "weakFilter", height: 18, bottom: 6, showDetail: false, brushSelect: false,
-        borderColor: theme.line, fillerColor: `${theme.series[0]}33`, backgroundColor: theme.faint,
+      {type: "slider", show: !isPrinting(), filterMode: "weakFilter", height: 18, bottom: 6, showDetail: false,
+        brushSelect: false, borderColor: theme.line, fillerColor: `${theme.series[0]}33`, backgroundColor: theme.faint,
         dataBackground: {lineStyle: {opacity: 0}, areaStyle: {opacity: 0}},
         selectedDataBackground: {lineStyle: {opacity: 0}, areaStyle: {opacity: 0}}},
     ],
