@@ -68,6 +68,7 @@ std::optional<std::size_t> SWEEPGRID_ENGINE::first_bad(const std::vector<Share>&
 SWEEPGRID_ENGINE_TEMPLATE
 void SWEEPGRID_ENGINE::update(std::span<const Handle> objects, std::span<const BoxType> boxes) {
   require_same_size(objects.size(), boxes.size(), "update");
+  if (envelopes_) return update_envelopes(objects, boxes);
   Objects& table = core_.objects();
   const ObjectPartition partition = partition_of(objects);
   std::vector<Share> shares = shares_of(partition);
@@ -86,7 +87,11 @@ std::vector<Handle> SWEEPGRID_ENGINE::insert(std::span<const Key> keys, std::spa
   require_same_size(keys.size(), boxes.size(), "insert");
   const NewIds ids = core_.objects().reserve(keys.size());
   try {
-    return insert(keys, boxes, ids);
+    if (!envelopes_) return insert(keys, boxes, ids);
+    const std::vector<BoxType> envelopes = envelopes_of(boxes);
+    const std::vector<Handle> handles = insert(keys, envelopes, ids);
+    store_envelopes(handles, boxes, envelopes);
+    return handles;
   } catch (...) {
     core_.objects().cancel_insert(ids);
     throw;
@@ -189,6 +194,7 @@ void SWEEPGRID_ENGINE::erase(std::span<const Handle> objects) {
     throw;
   }
   for (const Share& share : shares) table.finish_erase(share);
+  if (envelopes_) for_shares(shares, [&](const Share& share) { erase_envelopes(share, objects); });
 }
 
 // Throws before it erases the first.

@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 
+#include <sweepgrid/engine/envelope_options.hpp>
 #include <sweepgrid/sap/cell_kind.hpp>
 #include <sweepgrid/scheduler/executor.hpp>
 
@@ -18,7 +19,8 @@ enum class Reduction {
   kWitnessCounts,
 };
 
-/// Settings of an engine. Events do not depend on any of them; time and memory do. The defaults suit most scenes.
+/// Settings of an engine. Events do not depend on any of them but `envelope`; time and memory do. The defaults suit most
+/// scenes.
 template <class Scalar, int Dim>
 struct Config {
   /// Kind of the cells and its parameters.
@@ -32,6 +34,8 @@ struct Config {
   std::optional<int> cell_population;
   /// How deltas become events.
   Reduction reduction = Reduction::kSingleReporter;
+  /// Margins, swept boxes, strides: accuracy for time. Absent: none, and pairs are exact.
+  std::optional<EnvelopeOptions> envelope;
   /// Where the step runs; absent: `threads` workers of the engine's own (0: as many as the machine has; 1: none).
   std::shared_ptr<Executor> executor;
   int threads = 0;

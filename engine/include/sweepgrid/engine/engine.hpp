@@ -12,6 +12,8 @@
 
 #include <sweepgrid/engine/config.hpp>
 #include <sweepgrid/engine/engine_core.hpp>
+#include <sweepgrid/engine/envelope_filter.hpp>
+#include <sweepgrid/engine/envelopes.hpp>
 #include <sweepgrid/engine/event_order.hpp>
 #include <sweepgrid/engine/events.hpp>
 #include <sweepgrid/engine/handle.hpp>
@@ -26,8 +28,12 @@ namespace sweepgrid {
 ///
 /// `Scalar`: float, double or an integer type. `Dim`: 1 or more. `Key`: what the client calls its objects, any copyable
 /// and hashable type. `Order`: the strict weak order of keys in which events are sorted.
-/// float and double in 2 and 3 dimensions are compiled into the library; include <sweepgrid/engine/engine_core.inl.hpp>
-/// to use others.
+/// float, double, std::int32_t and std::int16_t in 2 and 3 dimensions are compiled into the library; include
+/// <sweepgrid/engine/engine_core.inl.hpp> to use others.
+///
+/// Guarantee: the pairs are exactly those of the boxes as given, closed, after each step, for every type, extents and
+/// distance; unless Config::envelope trades that for time, which says what it leaves. What rounds a client's boxes to
+/// a type (round_outward(), Quantizer) leaves a superset.
 ///
 /// Thread-safety: calls that queue (insert, update, erase) may run at once from many threads as long as no two of them
 /// concern the same object. All other calls want the engine for themselves.
@@ -43,6 +49,7 @@ class Engine {
  public:
   using BoxType = Box<Scalar, Dim>;
   using ConfigType = Config<Scalar, Dim>;
+  using Displacement = std::array<double, static_cast<std::size_t>(Dim)>;
 
   /// Throws std::invalid_argument that names the setting when one is out of its range.
   explicit Engine(ConfigType config = {});
@@ -53,6 +60,9 @@ class Engine {
   /// As above for keys[i], boxes[i]; handles are returned in order. Also an error: a key twice in `keys`. The fastest
   /// way to insert many. O(n / workers), and what is serial is short.
   std::vector<Handle> insert(std::span<const Key> keys, std::span<const BoxType> boxes);
+  /// As the first, with a margin of the object's own (EnvelopeOptions::margin). Also errors: Config::envelope is absent;
+  /// the margin is negative or not finite.
+  Handle insert(const Key& key, const BoxType& box, double margin);
 
   /// Queues a new box. The last update before a step wins. An update to the box that the object has costs nothing more.
   /// Errors: a stale handle, an unknown key, an erased object, a bad box. A handle of another engine is recognised only
@@ -63,6 +73,13 @@ class Engine {
   /// many, above all with objects in the order of their handles' indices, or boxes that are queued for the first time
   /// since the latest step. O(n / workers).
   void update(std::span<const Handle> objects, std::span<const BoxType> boxes);
+  /// As the first, for an object that will have moved by `ahead` (world units) at the next step: what it covers
+  /// meanwhile takes part. Also errors: EnvelopeOptions::swept is off; `ahead` is not finite.
+  void update(Handle object, const BoxType& box, const Displacement& ahead);
+
+  /// The margin of the object's later envelopes; one that is much too wide is made anew at the next step. Errors: a
+  /// stale handle; as insert() with a margin.
+  void set_margin(Handle object, double margin);
 
   /// Queues the end of an object: the next step() ends all its pairs. Its handle is stale and its key free at once.
   /// An object inserted and erased before the same step leaves no trace. Errors: as update. O(1).
@@ -86,6 +103,9 @@ class Engine {
   [[nodiscard]] std::optional<Handle> find(const Key& key) const;
   /// The box given last, whether or not a step has seen it. Errors: as update.
   [[nodiscard]] BoxType box(Handle object) const;
+  /// What takes part in its place, as of the latest step; before the first one, as it was inserted. Without
+  /// Config::envelope it is the box. Errors: as update.
+  [[nodiscard]] BoxType envelope(Handle object) const;
   [[nodiscard]] const Key& key(Handle object) const;
 
   /// Checks every named invariant of the engine and its cells against the boxes; throws InvariantError.
@@ -94,6 +114,9 @@ class Engine {
 
   /// Exact counters, times of the latest step's stages, memory. O(cells).
   [[nodiscard]] Stats stats() const;
+
+  /// Whether the promises of Config::envelope were kept. All zero when that is absent.
+  [[nodiscard]] EnvelopeReport envelope_report() const;
 
   /// Records each task's stage, size, start and duration in later steps. Off at first.
   void record_tasks(bool on);
@@ -107,6 +130,7 @@ class Engine {
   enum List : std::size_t { kEnds, kBegins, kLists };
 
   void add_order_stages();
+  void trim_to_objects();
   void sort_shard(std::size_t list, std::size_t shard);
   [[nodiscard]] std::vector<Pair<Key>>& list(std::size_t list) { return list == kEnds ? events_.ends : events_.begins; }
   [[nodiscard]] Pair<Key> keys_of(PairKey pair) const {
@@ -130,6 +154,24 @@ class Engine {
   std::optional<std::size_t> insert_keys_by_shard(const NewIds& ids, std::span<const std::uint32_t> hashes);
   void erase_keys(std::span<const Handle> objects);
 
+  // With Config::envelope, in envelope_calls.inl.hpp.
+  using EnvelopesType = Envelopes<Scalar, Dim>;
+  using FilterType = EnvelopeFilter<Scalar, Dim>;
+
+  void make_envelopes(const std::optional<EnvelopeOptions>& options);
+  Handle insert_with_envelope(const Key& key, const BoxType& box, double margin);
+  void update_envelope(Handle object, const BoxType& box);
+  void update_envelopes(std::span<const Handle> objects, std::span<const BoxType> boxes);
+  std::vector<BoxType> envelopes_of(std::span<const BoxType> boxes);
+  void store_envelopes(std::span<const Handle> handles, std::span<const BoxType> boxes,
+                       std::span<const BoxType> envelopes);
+  void erase_envelopes(const Share& share, std::span<const Handle> objects);
+  bool begin_step_with_envelopes();
+  void add_envelope_stats(Stats& stats) const;
+  void validate_envelopes() const;
+  void require_margin(const Key& key, const char* call, double margin) const;
+  [[nodiscard]] std::size_t event_lists() const { return filter_ ? filter_->lists() : core_.lists(); }
+
   [[nodiscard]] ObjectId live(Handle object, const char* call) const;
   [[nodiscard]] ObjectId live(const Key& key, const char* call) const;
   template <class Name>
@@ -137,6 +179,8 @@ class Engine {
   static void require_same_size(std::size_t objects, std::size_t boxes, const char* call);
 
   Core core_;
+  std::unique_ptr<EnvelopesType> envelopes_;  // absent: objects are their boxes
+  std::unique_ptr<FilterType> filter_;        // with EnvelopeOptions::exact
   KeyTable<Key, Hash> keys_;
   Events<Key> events_;
   std::array<Sorter, kLists> sorters_;

@@ -14,16 +14,19 @@ namespace sweepgrid {
 #define SWEEPGRID_ENGINE Engine<Scalar, Dim, Key, Hash, Order>
 
 SWEEPGRID_ENGINE_TEMPLATE
-SWEEPGRID_ENGINE::Engine(ConfigType config) : core_(std::move(config)) { add_order_stages(); }
+SWEEPGRID_ENGINE::Engine(ConfigType config) : core_(config) {
+  make_envelopes(config.envelope);
+  add_order_stages();
+}
 
 SWEEPGRID_ENGINE_TEMPLATE
 void SWEEPGRID_ENGINE::add_order_stages() {
-  StageGraph& graph = core_.graph();
+  StageGraph& graph = filter_ ? filter_->graph() : core_.graph();
   const auto order = graph.add(
-      "order", {core_.last_stage()},
+      "order", {filter_ ? filter_->last_stage() : core_.last_stage()},
       [this](std::vector<std::uint64_t>& costs) {
         const auto workers = static_cast<std::size_t>(core_.executor().concurrency());
-        const std::size_t shards = std::min(core_.lists(), workers);
+        const std::size_t shards = std::min(event_lists(), workers);
         for (Sorter& sorter : sorters_) sorter.reset(shards);
         costs.assign(kLists * shards, 1);
       },
@@ -45,8 +48,15 @@ SWEEPGRID_ENGINE_TEMPLATE
 void SWEEPGRID_ENGINE::sort_shard(std::size_t list, std::size_t shard) {
   auto& out = sorters_[list].shard(shard);
   const std::size_t shards = sorters_[list].shards();
-  for (std::size_t i = shard * core_.lists() / shards; i < (shard + 1) * core_.lists() / shards; ++i) {
-    for (const PairKey pair : list == kEnds ? core_.ends(i) : core_.begins(i)) out.push_back(keys_of(pair));
+  const auto add = [&](std::span<const PairKey> pairs) {
+    for (const PairKey pair : pairs) out.push_back(keys_of(pair));
+  };
+  for (std::size_t i = shard * event_lists() / shards; i < (shard + 1) * event_lists() / shards; ++i) {
+    if (filter_) {
+      add(list == kEnds ? filter_->ends(i) : filter_->begins(i));
+    } else {
+      add(list == kEnds ? core_.ends(i) : core_.begins(i));
+    }
   }
   sorters_[list].sort_shard(shard);
 }
@@ -56,6 +66,7 @@ void SWEEPGRID_ENGINE::sort_shard(std::size_t list, std::size_t shard) {
 SWEEPGRID_ENGINE_TEMPLATE
 Handle SWEEPGRID_ENGINE::insert(const Key& key, const BoxType& box) {
   require_valid(box, key, "insert");
+  if (envelopes_) return insert_with_envelope(key, box, EnvelopesType::kCommonMargin);
   Handle handle;
   bool added = false;
   try {
@@ -73,6 +84,7 @@ Handle SWEEPGRID_ENGINE::insert(const Key& key, const BoxType& box) {
 
 SWEEPGRID_ENGINE_TEMPLATE
 void SWEEPGRID_ENGINE::update(Handle object, const BoxType& box) {
+  if (envelopes_) return update_envelope(object, box);
   if (core_.objects().update(object, box)) return;
   require_valid(box, keys_.key(live(object, "update")), "update");
 }
@@ -80,6 +92,7 @@ void SWEEPGRID_ENGINE::update(Handle object, const BoxType& box) {
 SWEEPGRID_ENGINE_TEMPLATE
 void SWEEPGRID_ENGINE::update(const Key& key, const BoxType& box) {
   const ObjectId id = live(key, "update");
+  if (envelopes_) return update(core_.objects().handle(id), box);
   if (!core_.objects().update(core_.objects().handle(id), box)) require_valid(box, key, "update");
 }
 
@@ -88,33 +101,41 @@ void SWEEPGRID_ENGINE::erase(Handle object) {
   const ObjectId id = live(object, "erase");
   keys_.erase(id);
   core_.objects().erase(id);
+  if (envelopes_) envelopes_->erase(id);
 }
 
 SWEEPGRID_ENGINE_TEMPLATE
 void SWEEPGRID_ENGINE::erase(const Key& key) {
-  const ObjectId id = live(key, "erase");
-  keys_.erase(id);
-  core_.objects().erase(id);
+  erase(core_.objects().handle(live(key, "erase")));
 }
 
 // ---- the step and what it leaves
 
 SWEEPGRID_ENGINE_TEMPLATE
 const Events<Key>& SWEEPGRID_ENGINE::step() {
+  if (envelopes_ && !begin_step_with_envelopes()) return events_;
   if (!core_.objects().anything_queued()) {
     events_.ends.clear();
     events_.begins.clear();
   }
   core_.step();
   core_.count_events(events_.begins.size(), events_.ends.size());
-  if (core_.objects().trim()) keys_.trim(core_.objects().bound());
+  if (core_.objects().trim()) trim_to_objects();
   return events_;
+}
+
+SWEEPGRID_ENGINE_TEMPLATE
+void SWEEPGRID_ENGINE::trim_to_objects() {
+  const ObjectId bound = core_.objects().bound();
+  keys_.trim(bound);
+  if (envelopes_) envelopes_->trim(bound);
+  if (filter_) filter_->trim(bound);
 }
 
 SWEEPGRID_ENGINE_TEMPLATE
 std::vector<Pair<Key>> SWEEPGRID_ENGINE::pairs() const {
   std::vector<Pair<Key>> pairs;
-  for (const PairKey pair : core_.pairs()) pairs.push_back(keys_of(pair));
+  for (const PairKey pair : filter_ ? filter_->pairs() : core_.pairs()) pairs.push_back(keys_of(pair));
   std::sort(pairs.begin(), pairs.end(), Sorter::kLess);
   return pairs;
 }
@@ -132,14 +153,26 @@ std::optional<Handle> SWEEPGRID_ENGINE::find(const Key& key) const {
 }
 
 SWEEPGRID_ENGINE_TEMPLATE
-auto SWEEPGRID_ENGINE::box(Handle object) const -> BoxType { return core_.objects().record(live(object, "box")).box; }
+auto SWEEPGRID_ENGINE::box(Handle object) const -> BoxType {
+  const ObjectId id = live(object, "box");
+  return envelopes_ ? envelopes_->box(id) : core_.objects().record(id).box;
+}
+
+SWEEPGRID_ENGINE_TEMPLATE
+auto SWEEPGRID_ENGINE::envelope(Handle object) const -> BoxType {
+  return core_.objects().record(live(object, "envelope")).box;
+}
 
 SWEEPGRID_ENGINE_TEMPLATE
 const Key& SWEEPGRID_ENGINE::key(Handle object) const { return keys_.key(live(object, "key")); }
 
 SWEEPGRID_ENGINE_TEMPLATE
 void SWEEPGRID_ENGINE::validate() const {
-  core_.validate();
+  if (envelopes_) {
+    validate_envelopes();
+  } else {
+    core_.validate();
+  }
   for (const auto* events : {&events_.ends, &events_.begins}) {
     const auto unordered = std::adjacent_find(events->begin(), events->end(),
                                               [](const auto& a, const auto& b) { return !Sorter::kLess(a, b); });
@@ -171,6 +204,7 @@ SWEEPGRID_ENGINE_TEMPLATE
 Stats SWEEPGRID_ENGINE::stats() const {
   Stats stats = core_.stats();
   stats.bytes_objects += keys_.bytes();
+  if (envelopes_) add_envelope_stats(stats);
   return stats;
 }
 
@@ -231,3 +265,4 @@ void SWEEPGRID_ENGINE::require_same_size(std::size_t objects, std::size_t boxes,
 }  // namespace sweepgrid
 
 #include <sweepgrid/engine/bulk.inl.hpp>
+#include <sweepgrid/engine/envelope_calls.inl.hpp>

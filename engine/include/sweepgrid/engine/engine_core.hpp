@@ -21,7 +21,7 @@
 namespace sweepgrid {
 
 /// The engine without client keys: objects by id, and the step as a graph of stages. Engine adds keys and the order of
-/// events. Not part of the public interface; compiled ahead for float and double in 2 and 3 dimensions.
+/// events. Not part of the public interface; compiled ahead for the types that Engine names, in 2 and 3 dimensions.
 template <class Scalar, int Dim>
 class EngineCore {
  public:
@@ -55,6 +55,8 @@ class EngineCore {
   }
   /// To be told the numbers of events once they are free of doubles.
   void count_events(std::size_t begins, std::size_t ends);
+  /// Pairs by the events of all steps so far.
+  [[nodiscard]] std::size_t pair_count() const { return pairs_; }
 
   [[nodiscard]] std::vector<PairKey> pairs() const;
 
@@ -191,5 +193,9 @@ extern template class EngineCore<float, 2>;
 extern template class EngineCore<float, 3>;
 extern template class EngineCore<double, 2>;
 extern template class EngineCore<double, 3>;
+extern template class EngineCore<std::int32_t, 2>;
+extern template class EngineCore<std::int32_t, 3>;
+extern template class EngineCore<std::int16_t, 2>;
+extern template class EngineCore<std::int16_t, 3>;
 
 }  // namespace sweepgrid

@@ -9,6 +9,8 @@
 #include <utility>
 
 #include <sweepgrid/engine/engine_core.hpp>
+#include <sweepgrid/engine/envelope_filter.inl.hpp>
+#include <sweepgrid/engine/envelopes.inl.hpp>
 #include <sweepgrid/engine/follow_scene.inl.hpp>
 #include <sweepgrid/engine/validate.inl.hpp>
 #include <sweepgrid/grid/grid_fit.inl.hpp>

@@ -1,0 +1,113 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include <sweepgrid/engine/candidate_lists.hpp>
+#include <sweepgrid/engine/engine_core.hpp>
+#include <sweepgrid/engine/envelopes.hpp>
+#include <sweepgrid/sap/ids.hpp>
+#include <sweepgrid/scheduler/stage_graph.hpp>
+
+namespace sweepgrid {
+
+/// With EnvelopeOptions::exact: the pairs of envelopes are kept as candidates, and the events of the boxes are found
+/// among them. A pair of boxes that overlapped at the previous step was a candidate then; so what has to be tested
+/// are the candidates of objects whose boxes changed, and the new ones. Nothing is kept of a pair but that it is a
+/// candidate: whether it has begun or ended follows from the boxes at both steps.
+///
+/// A graph of stages of its own, run after that of the engine; the engine adds the order of events.
+template <class Scalar, int Dim>
+class EnvelopeFilter {
+ public:
+  using Core = EngineCore<Scalar, Dim>;
+  using BoxesAndEnvelopes = Envelopes<Scalar, Dim>;
+
+  EnvelopeFilter(Core& core, BoxesAndEnvelopes& envelopes);
+
+  [[nodiscard]] StageGraph& graph() { return *graph_; }
+  [[nodiscard]] const StageGraph& graph() const { return *graph_; }
+  /// What stages that read the lists of events wait for.
+  [[nodiscard]] StageGraph::StageId last_stage() const { return filter_stage_; }
+
+  /// Finds the events of this step; `query`: the core has stepped. Returns false, and does not run the graph, where
+  /// there can be none.
+  bool step(bool query);
+
+  /// As EngineCore's.
+  [[nodiscard]] std::size_t lists() const { return tasks_.size(); }
+  [[nodiscard]] std::span<const PairKey> begins(std::size_t list) const { return tasks_[list].begins; }
+  [[nodiscard]] std::span<const PairKey> ends(std::size_t list) const { return tasks_[list].ends; }
+  [[nodiscard]] std::vector<PairKey> pairs() const;
+
+  /// To be told the numbers of events of every step, once they are free of doubles.
+  void count_events(std::size_t begins, std::size_t ends);
+  /// Puts what clients see in place of what the core saw: events, pairs, the stages of this graph too.
+  void add_stats(Stats& stats) const;
+
+  void trim(std::size_t bound) { lists_.resize(std::min(bound, lists_.bound())); }
+
+  /// V2: the candidates are the pairs of the core. Throws InvariantError. Precondition: nothing queued there.
+  void validate() const;
+
+ private:
+  /// A part of the granules with changed objects, or a list of new candidates; and what began and ended there.
+  struct Task {
+    std::vector<PairKey> begins;
+    std::vector<PairKey> ends;
+  };
+
+  void plan_filter(std::vector<std::uint64_t>& costs);
+  void filter(std::size_t task);
+  void filter_object(ObjectId object, Task& out) const;
+  void plan_settle(std::vector<std::uint64_t>& costs);
+  void settle(std::size_t task);
+  void count_candidates();
+
+  [[nodiscard]] std::size_t new_lists() const { return query_ ? core_.lists() : 0; }
+  [[nodiscard]] std::span<const std::uint32_t> granules(std::size_t block) const {
+    const auto all = envelopes_.granules();
+    const std::size_t first = block * all.size() / blocks_;
+    return all.subspan(first, (block + 1) * all.size() / blocks_ - first);
+  }
+  [[nodiscard]] bool did_overlap(ObjectId a, ObjectId b) const {
+    return envelopes_.existed(a) && envelopes_.existed(b) && meet(envelopes_.before(a), envelopes_.before(b));
+  }
+  [[nodiscard]] bool do_overlap(ObjectId a, ObjectId b) const {
+    return envelopes_.exists(a) && envelopes_.exists(b) && meet(envelopes_.box(a), envelopes_.box(b));
+  }
+  // As cells compare: by ordered bits, which tell denormals apart where the host flushes them to zero.
+  [[nodiscard]] static bool meet(const Box<Scalar, Dim>& a, const Box<Scalar, Dim>& b) {
+    return OrderedBox<Scalar, Dim>(a).overlaps(OrderedBox<Scalar, Dim>(b));
+  }
+
+  Core& core_;
+  BoxesAndEnvelopes& envelopes_;
+  CandidateLists lists_;
+  std::uint64_t begins_ = 0;  // of the latest step
+  std::uint64_t ends_ = 0;
+  std::uint64_t total_begins_ = 0;
+  std::uint64_t total_ends_ = 0;
+  bool ran_ = false;
+  bool query_ = false;
+  std::size_t blocks_ = 0;  // of granules; the first tasks
+  std::vector<Task> tasks_;
+  std::vector<CandidateLists::Shard> shards_;
+  std::unique_ptr<StageGraph> graph_;
+  StageGraph::StageId filter_stage_ = 0;
+};
+
+extern template class EnvelopeFilter<float, 2>;
+extern template class EnvelopeFilter<float, 3>;
+extern template class EnvelopeFilter<double, 2>;
+extern template class EnvelopeFilter<double, 3>;
+extern template class EnvelopeFilter<std::int32_t, 2>;
+extern template class EnvelopeFilter<std::int32_t, 3>;
+extern template class EnvelopeFilter<std::int16_t, 2>;
+extern template class EnvelopeFilter<std::int16_t, 3>;
+
+}  // namespace sweepgrid
