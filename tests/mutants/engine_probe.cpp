@@ -1,117 +1,78 @@
 // A small oracle test of the engine, quick to compile: `run` builds it anew for every planted bug.
 // Exits with 1 and prints the name of each broken invariant when it notices something.
 
-#include <algorithm>
+#include <cstddef>
 #include <cstdint>
+#include <exception>
 #include <iostream>
-#include <iterator>
-#include <map>
-#include <set>
+#include <memory>
 #include <string>
-#include <utility>
+#include <vector>
 
-#include <sweepgrid/engine/engine.hpp>
-#include <sweepgrid/engine/engine_core.inl.hpp>
-
+#include "client.hpp"
 #include "op_script.hpp"
 #include "scene_script.hpp"
 
 namespace sweepgrid {
-
-template class EngineCore<float, 2>;
-
 namespace {
 
 using TestEngine = Engine<float, 2>;
-using KeyPair = std::pair<std::uint64_t, std::uint64_t>;
+using TestConfig = Config<float, 2>;
 using Ops = oracle::EngineOps<float, 2>;
 
-/// A client that believes the events, and a list of boxes that knows better.
-class Client {
- public:
-  void queue(TestEngine& engine, const Ops& ops) {
-    for (const auto& op : ops) {
-      if (op.kind == OpKind::kErase) {
-        engine.erase(op.key);
-        boxes_.erase(op.key);
-        continue;
-      }
-      if (op.kind == OpKind::kInsert) {
-        engine.insert(op.key, op.box);
-      } else {
-        engine.update(op.key, op.box);
-      }
-      boxes_.insert_or_assign(op.key, op.box);
+void queue(TestEngine& engine, Client& client, const Ops& ops) {
+  for (const auto& op : ops) {
+    if (op.kind == OpKind::kErase) {
+      engine.erase(op.key);
+      client.erase(op.key);
+      continue;
     }
+    if (op.kind == OpKind::kInsert) {
+      engine.insert(op.key, op.box);
+    } else {
+      engine.update(op.key, op.box);
+    }
+    client.set(op.key, op.box);
   }
+}
 
-  /// The name of a broken invariant and what broke it; empty if all is well. "oracle": no event tells of a change.
-  std::string hear(const Events<std::uint64_t>& events) {
-    const auto less = [](const auto& a, const auto& b) { return key_pair(a) < key_pair(b); };
-    for (const auto* list : {&events.ends, &events.begins}) {
-      const auto unordered =
-          std::adjacent_find(list->begin(), list->end(), [&](const auto& a, const auto& b) { return !less(a, b); });
-      if (unordered != list->end()) return "E3: not sorted and unique at " + text(key_pair(*unordered));
-    }
-    for (const auto& pair : events.ends) {
-      if (known_.erase(key_pair(pair)) == 0) return "E2: an end without a begin: " + text(key_pair(pair));
-    }
-    for (const auto& pair : events.begins) {
-      if (!known_.insert(key_pair(pair)).second) return "E2: begun twice: " + text(key_pair(pair));
-    }
-    std::set<KeyPair> truth;
-    for (auto a = boxes_.begin(); a != boxes_.end(); ++a) {
-      for (auto b = std::next(a); b != boxes_.end(); ++b) {
-        if (a->second.overlaps(b->second)) truth.emplace(a->first, b->first);
-      }
-    }
-    return truth == known_ ? "" : "oracle: the events do not lead to the overlaps of the boxes";
+/// Steps and says what is wrong, if anything: what the client finds and what validate() does. One names the invariant,
+/// the other sees from outside that events are wrong.
+std::vector<std::string> step(TestEngine& engine, Client& client, const Ops& ops) {
+  std::vector<std::string> findings;
+  try {
+    queue(engine, client, ops);
+    const std::string finding = client.hear(engine.step());
+    if (!finding.empty()) findings.push_back(finding);
+  } catch (const std::exception& error) {
+    return {text_of(error)};  // an engine that has thrown can but be destroyed
   }
-
- private:
-  static KeyPair key_pair(const Pair<std::uint64_t>& pair) { return {pair.first, pair.second}; }
-  static std::string text(const KeyPair& pair) {
-    return "(" + std::to_string(pair.first) + ", " + std::to_string(pair.second) + ")";
+  try {
+    engine.validate();
+  } catch (const std::exception& error) {
+    findings.push_back(text_of(error));
   }
+  return findings;
+}
 
-  std::map<std::uint64_t, Box<float, 2>> boxes_;
-  std::set<KeyPair> known_;
-};
-
-std::string text_of(const std::exception& error) {
-  const bool named = dynamic_cast<const InvariantError*>(&error) != nullptr;
-  return (named ? "" : "oracle: exception: ") + std::string(error.what());
+int report(const char* scene, int step, const std::vector<std::string>& findings) {
+  std::cout << "scene " << scene << ", step " << step << '\n';
+  for (const std::string& finding : findings) std::cout << finding << '\n';
+  return 1;
 }
 
 template <class Script>
-int probe(const Config<float, 2>& config, const char* scene, Script script, int steps) {
+int probe(const TestConfig& config, const char* scene, Script script, int steps) {
   TestEngine engine(config);
   Client client;
-  int status = 0;
-  for (int step = 0; step < steps && status == 0; ++step) {
-    const auto note = [&](const std::string& finding) {
-      if (status == 0) std::cout << "scene " << scene << ", step " << step << '\n';
-      std::cout << finding << '\n';
-      status = 1;
-    };
-    try {
-      client.queue(engine, script());
-      const std::string finding = client.hear(engine.step());
-      if (!finding.empty()) note(finding);
-    } catch (const std::exception& error) {
-      note(text_of(error));
-    }
-    // Said beside the client's finding: one names the invariant, the other sees from outside that events are wrong.
-    try {
-      engine.validate();
-    } catch (const std::exception& error) {
-      note(text_of(error));
-    }
+  for (int number = 0; number < steps; ++number) {
+    const auto findings = step(engine, client, script());
+    if (!findings.empty()) return report(scene, number, findings);
   }
-  return status;
+  return 0;
 }
 
-int probe_cells(const Config<float, 2>& config, const oracle::Regime& regime) {
+int probe_cells(const TestConfig& config, const oracle::Regime& regime) {
   oracle::OpScript<float, 2> script(regime, 1);
   const auto next = [&] {
     Ops ops;
@@ -121,15 +82,19 @@ int probe_cells(const Config<float, 2>& config, const oracle::Regime& regime) {
   return probe(config, regime.name, next, regime.drains);
 }
 
-int probe_scene(const Config<float, 2>& config, const oracle::SceneRegime& regime) {
+int probe_scene(const TestConfig& config, const oracle::SceneRegime& regime) {
   oracle::SceneScript<float, 2> script(regime, 1);
   return probe(
       config, regime.name, [&] { return script.next(); }, regime.steps);
 }
 
-Config<float, 2> config_of(CellKind kind, Reduction reduction, double cell_size) {
-  Config<float, 2> config;
-  config.threads = 1;
+TestConfig config_of(CellKind kind, Reduction reduction, double cell_size) {
+  TestConfig config;
+  if (kind == CellKind::kBatch) {
+    config.executor = std::make_shared<Backwards>();
+  } else {
+    config.threads = 1;
+  }
   config.cell.kind = kind;
   config.cell.segment_capacity = 8;
   config.reduction = reduction;
@@ -154,24 +119,72 @@ constexpr oracle::SceneRegime kGiants{
 constexpr oracle::SceneRegime kFleeting{
     .name = "Fleeting", .population = 200, .moving_percent = 20, .churn_percent = 40};
 
+/// Many come at once, and few move: everybody else is carried to the new cells, a slice in each step.
+int probe_following(TestConfig config) {
+  config.executor = std::make_shared<Backwards>();
+  TestEngine engine(config);
+  Client client;
+  oracle::Random random(1);
+  const auto box = [&](float size) {
+    const float x = size * static_cast<float>(random.below(10'000)) / 10'000;
+    const float y = size * static_cast<float>(random.below(10'000)) / 10'000;
+    return Box<float, 2>({x, y}, {x + 0.5F, y + 0.5F});
+  };
+  const auto play = [&](int number, const Ops& ops, double cell_size) {
+    std::vector<std::string> findings = step(engine, client, ops);
+    const Stats stats = engine.stats();
+    if (cell_size > 0 && stats.grids != 1) {
+      findings.push_back("follow: objects are left in grids of old: there are " + std::to_string(stats.grids));
+    }
+    if (cell_size > 0 && stats.cell_size > cell_size) {
+      findings.push_back("follow: cells are still " + std::to_string(stats.cell_size) + " wide");
+    }
+    return findings.empty() ? 0 : report("Following", number, findings);
+  };
+  constexpr std::uint64_t kFew = 60;
+  constexpr std::uint64_t kMany = 1500;
+  Ops ops;
+  const auto put = [&](OpKind kind, std::uint64_t first, std::uint64_t end, float size) {
+    for (std::uint64_t key = first; key < end; ++key) ops.push_back({kind, key, box(size)});
+  };
+  put(OpKind::kInsert, 0, kFew, 100);
+  if (play(0, ops, 0) != 0) return 1;
+  const double first_size = engine.stats().cell_size;
+  for (int number = 1; number < 14; ++number) {
+    ops.clear();
+    if (number == 1) put(OpKind::kInsert, kFew, kMany, 100);
+    put(OpKind::kUpdate, 0, kFew, 100);
+    if (number > 3) ops.push_back({OpKind::kErase, kMany - static_cast<std::uint64_t>(number), {}});
+    if (play(number, ops, number == 13 ? first_size / 1.3 : 0) != 0) return 1;
+  }
+  const double second_size = engine.stats().cell_size;
+  for (int number = 14; number < 26; ++number) {  // all move into a corner
+    ops.clear();
+    put(OpKind::kUpdate, 0, number < 16 ? kMany - 13 : kFew, 12);
+    if (play(number, ops, number == 25 ? second_size / 1.25 : 0) != 0) return 1;
+  }
+  return 0;
+}
+
 int probe_scenes() {
-  const Config<float, 2> rows = config_of(CellKind::kRows, Reduction::kSingleReporter, 0);
-  const Config<float, 2> batch = config_of(CellKind::kBatch, Reduction::kSingleReporter, 0);
-  const Config<float, 2> fine = config_of(CellKind::kRows, Reduction::kSingleReporter, 1);
+  const TestConfig rows = config_of(CellKind::kRows, Reduction::kSingleReporter, 0);
+  const TestConfig batch = config_of(CellKind::kBatch, Reduction::kSingleReporter, 0);
+  const TestConfig fine = config_of(CellKind::kRows, Reduction::kSingleReporter, 1);
+  if (probe_following(config_of(CellKind::kRows, Reduction::kSingleReporter, 0)) != 0) return 1;
   for (const auto& regime : {kByTurns, kSizes, kGiants, kFollowed}) {
     if (probe_scene(rows, regime) != 0 || probe_scene(batch, regime) != 0) return 1;
   }
-  return probe_scene(fine, kGiants) | probe_scene(fine, kFleeting);
+  return probe_scene(fine, kGiants) != 0 || probe_scene(fine, kFleeting) != 0 ? 1 : 0;
 }
 
 int probe_all_cells() {
-  const Config<float, 2> rows = config_of(CellKind::kRows, Reduction::kSingleReporter, 0);
-  const Config<float, 2> batch = config_of(CellKind::kBatch, Reduction::kSingleReporter, 0);
-  const Config<float, 2> counts = config_of(CellKind::kBatch, Reduction::kWitnessCounts, 0);
-  const Config<float, 2> wide = config_of(CellKind::kSegmented, Reduction::kWitnessCounts, 500);
-  const Config<float, 2> crowded = config_of(CellKind::kRows, Reduction::kWitnessCounts, 2);
+  const TestConfig rows = config_of(CellKind::kRows, Reduction::kSingleReporter, 0);
+  const TestConfig batch = config_of(CellKind::kBatch, Reduction::kSingleReporter, 0);
+  const TestConfig counts = config_of(CellKind::kBatch, Reduction::kWitnessCounts, 0);
+  const TestConfig wide = config_of(CellKind::kSegmented, Reduction::kWitnessCounts, 500);
+  const TestConfig crowded = config_of(CellKind::kRows, Reduction::kWitnessCounts, 2);
   for (const oracle::Regime& regime : oracle::kRegimes) {
-    for (const Config<float, 2>* config : {&rows, &batch, &counts, &wide, &crowded}) {
+    for (const TestConfig* config : {&rows, &batch, &counts, &wide, &crowded}) {
       if (config == &wide && regime.palette != oracle::Palette::kFine) continue;
       if (config == &crowded && regime.palette != oracle::Palette::kLattice) continue;
       if (probe_cells(*config, regime) != 0) return 1;
