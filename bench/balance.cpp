@@ -16,11 +16,10 @@
 #include <sweepgrid/scheduler/executor.hpp>
 
 #include "engine_setting.hpp"
-#include "engine_system.hpp"
 #include "figures_file.hpp"
-#include "scene_script.hpp"
 #include "spread.hpp"
 #include "stopwatch.hpp"
+#include "system.hpp"
 #include "task_load.hpp"
 
 namespace sweepgrid::bench {

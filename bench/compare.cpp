@@ -15,8 +15,8 @@
 #include "engine_setting.hpp"
 #include "figures_file.hpp"
 #include "rounds.hpp"
-#include "scene_script.hpp"
 #include "standard_scenes.hpp"
+#include "system.hpp"
 
 namespace sweepgrid::bench {
 namespace {

@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "rounds.hpp"
-#include "scene_script.hpp"
+#include "system.hpp"
 
 namespace sweepgrid::bench {
 

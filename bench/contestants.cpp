@@ -1,7 +1,7 @@
 #include "contestants.hpp"
 
 #include "engine_setting.hpp"
-#include "engine_system.hpp"
+#include "system.hpp"
 
 namespace sweepgrid::bench {
 

@@ -13,9 +13,8 @@
 
 #include "counter_table.hpp"
 #include "engine_setting.hpp"
-#include "engine_system.hpp"
-#include "scene_script.hpp"
 #include "standard_scenes.hpp"
+#include "system.hpp"
 
 namespace sweepgrid::bench {
 namespace {

@@ -14,11 +14,10 @@
 #include <fmt/format.h>
 
 #include "engine_setting.hpp"
-#include "engine_system.hpp"
 #include "figures_file.hpp"
-#include "scene_script.hpp"
 #include "spread.hpp"
 #include "stopwatch.hpp"
+#include "system.hpp"
 
 namespace sweepgrid::bench {
 namespace {

@@ -7,8 +7,8 @@
 
 #include "contestants.hpp"
 #include "run.hpp"
-#include "scene_script.hpp"
 #include "spread.hpp"
+#include "system.hpp"
 
 namespace sweepgrid::bench {
 

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "pair_digest.hpp"
-#include "scene_script.hpp"
 #include "scene_truth.hpp"
 #include "system.hpp"
 

@@ -7,7 +7,7 @@
 
 #include "cli/overlap_oracle.hpp"
 #include "pair_digest.hpp"
-#include "scene_script.hpp"
+#include "system.hpp"
 
 namespace sweepgrid::bench {
 

@@ -15,10 +15,9 @@
 #include "cli/cell_names.hpp"
 #include "counter_table.hpp"
 #include "engine_setting.hpp"
-#include "engine_system.hpp"
-#include "scene_script.hpp"
 #include "standard_scenes.hpp"
 #include "stopwatch.hpp"
+#include "system.hpp"
 
 namespace sweepgrid::bench {
 namespace {

@@ -1,23 +1,12 @@
 #pragma once
 
 #include <unordered_map>
-#include <utility>
 #include <vector>
 
-#include <sweepgrid/engine/events.hpp>
-
+#include "accuracy/scene_pair.hpp"
 #include "scenes/scene_source.hpp"
 
 namespace sweepgrid {
-
-using ScenePair = Pair<SceneKey>;
-
-/// By key of the first, then of the second.
-struct ScenePairOrder {
-  bool operator()(const ScenePair& a, const ScenePair& b) const {
-    return a.first != b.first ? a.first < b.first : a.second < b.second;
-  }
-};
 
 /// What overlaps, found by other means than the engine's and from nothing but the boxes: sort by min x and sweep.
 /// Comparisons are in double, which is exact for float boxes, too.

@@ -38,10 +38,11 @@ GeneratedScene::GeneratedScene(std::string name, const GeneratorParams& params)
   const std::uint64_t covers = std::min(params_.covers, params_.n);
   moving_count_ = static_cast<std::size_t>(std::floor(params_.moving * static_cast<double>(params_.n) + 0.5));
   moving_count_ = std::min<std::size_t>(moving_count_, params_.n - covers);
+  int side = 1;
   for (std::size_t i = 0; i < slots_.size(); ++i) {
     slots_[i].width = quota(params_.large, i) > 0 ? params_.width * params_.scale : params_.width;
     slots_[i].covers = i >= slots_.size() - covers;
-    if (quota(params_.infinite, i) > 0) slots_[i].reaches = i % 2 == 0 ? 1 : -1;
+    if (quota(params_.infinite, i) > 0) slots_[i].reaches = side, side = -side;
   }
   deck_.resize(slots_.size());
   std::iota(deck_.begin(), deck_.end(), 0U);

@@ -7,12 +7,16 @@
 
 #include <sweepgrid/engine/engine.hpp>
 
-#include "system.hpp"
+#include "baselines/peer_system.hpp"
 
-namespace sweepgrid::bench {
+namespace sweepgrid::accuracy {
+
+using baselines::EventTotals;
+using baselines::ObjectPair;
+using baselines::ScriptStep;
 
 /// The engine as a client uses it: by handle, and in bulk.
-class EngineSystem final : public System {
+class EngineSystem final : public baselines::System {
  public:
   /// `single_calls`: one call for every object rather than one for all.
   EngineSystem(const Config<float, 3>& config, bool single_calls, std::uint32_t objects)
@@ -39,4 +43,4 @@ class EngineSystem final : public System {
   EventTotals totals_;
 };
 
-}  // namespace sweepgrid::bench
+}  // namespace sweepgrid::accuracy

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "system.hpp"
+#include "baselines/peer_system.hpp"
 
-namespace sweepgrid::bench {
+namespace sweepgrid::baselines {
 
 /// A whole scene in memory, so that reading it is no part of what is timed.
 struct SceneScript {
@@ -20,4 +20,4 @@ struct SceneScript {
 /// Reads at most `steps` steps after the start. Throws what open_scene() throws.
 [[nodiscard]] SceneScript read_script(const std::string& scene, std::uint64_t steps);
 
-}  // namespace sweepgrid::bench
+}  // namespace sweepgrid::baselines

@@ -1,11 +1,11 @@
-#include "scene_script.hpp"
+#include "baselines/peer_script.hpp"
 
 #include <unordered_map>
 
 #include "cli/rounded_step.hpp"
 #include "scenes/open_scene.hpp"
 
-namespace sweepgrid::bench {
+namespace sweepgrid::baselines {
 namespace {
 
 /// Numbers the objects in the order of their first appearance.
@@ -52,4 +52,4 @@ SceneScript read_script(const std::string& scene, std::uint64_t steps) {
   return script;
 }
 
-}  // namespace sweepgrid::bench
+}  // namespace sweepgrid::baselines

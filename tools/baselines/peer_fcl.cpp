@@ -1,8 +1,8 @@
 #include <fcl/broadphase/broadphase_dynamic_AABB_tree.h>
 
-#include "system.hpp"
+#include "baselines/peer_fcl.hpp"
 
-namespace sweepgrid::bench {
+namespace sweepgrid::baselines {
 namespace {
 
 using Collider = fcl::CollisionObject<float>;
@@ -106,4 +106,4 @@ std::unique_ptr<System> make_fcl(FclUpkeep upkeep, std::uint32_t objects) {
   return std::make_unique<FclSystem>(upkeep, objects);
 }
 
-}  // namespace sweepgrid::bench
+}  // namespace sweepgrid::baselines

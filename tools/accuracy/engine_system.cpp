@@ -1,6 +1,6 @@
-#include "engine_system.hpp"
+#include "accuracy/engine_system.hpp"
 
-namespace sweepgrid::bench {
+namespace sweepgrid::accuracy {
 
 void EngineSystem::queue(const ScriptStep& step) {
   if (single_calls_) {
@@ -42,4 +42,4 @@ std::span<const Handle> EngineSystem::handles_of(const std::vector<std::uint32_t
   return chosen_;
 }
 
-}  // namespace sweepgrid::bench
+}  // namespace sweepgrid::accuracy
