@@ -21,6 +21,14 @@ constexpr double kEventsPerStep = 20;  // of figure::kInsertWork
 double swaps_per_event(const Entry& entry) { return entry.per_step(entry.work.cells.swaps) / kEventsPerStep; }
 double tests_per_event(const Entry& entry) { return entry.per_step(entry.work.cells.box_tests) / kEventsPerStep; }
 
+std::optional<double> swaps_at_last(const Results& results, const std::string& system) {
+  const auto entries = results.series(figure::kInsertWork, system);
+  return entries.empty() ? std::nullopt : std::optional(swaps_per_event(*entries.back()));
+}
+
+// From here on a grid has cells with neighbours on all sides.
+constexpr double kLeastGrid = 8000;
+
 // The x whose time is least; absent when nothing was measured.
 std::optional<double> best_x(const Results& results, const std::string& figure, const std::string& system) {
   const auto entries = results.series(figure, system);
@@ -30,49 +38,62 @@ std::optional<double> best_x(const Results& results, const std::string& figure, 
   return best == entries.end() ? std::nullopt : std::optional((*best)->x);
 }
 
-// How many times as long as at the best x it takes at that closest to `x`.
-double loss_at(const Results& results, const std::string& figure, const std::string& system, double x) {
+const Entry* closest(const Results& results, const std::string& figure, const std::string& system, double x) {
   const auto entries = results.series(figure, system);
-  double least = INFINITY;
-  const Entry* closest = nullptr;
-  for (const Entry* entry : entries) {
-    least = std::min(least, median_seconds(*entry));
-    const auto distance = [x](const Entry* e) { return std::abs(std::log(e->x / x)); };
-    if (closest == nullptr || distance(entry) < distance(closest)) closest = entry;
-  }
-  return closest == nullptr ? NAN : median_seconds(*closest) / least;
+  const auto distance = [x](const Entry* entry) { return std::abs(std::log(entry->x / x)); };
+  const auto found = std::min_element(entries.begin(), entries.end(),
+                                      [&](const Entry* a, const Entry* b) { return distance(a) < distance(b); });
+  return found == entries.end() ? nullptr : *found;
+}
+
+// How many times as long as at the best x it takes at that closest to `x`.
+std::string loss_text(const Results& results, const std::string& figure, const std::string& system, double x) {
+  const Entry* there = closest(results, figure, system, x);
+  const auto best = best_x(results, figure, system);
+  if (there == nullptr || !best) return "";
+  const double loss = median_seconds(*there) / median_seconds(*results.find(figure, system, *best));
+  return fmt::format("{} takes {:.2f} times as long as the best.", there->x, loss);
+}
+
+// What the size of cells changes, by exact counts.
+std::string population_text(const Results& results, const std::string& system) {
+  const Entry* there = closest(results, figure::kPopulation, system, 300);
+  const auto best = best_x(results, figure::kPopulation, system);
+  if (there == nullptr || !best) return "";
+  const Entry* at_best = results.find(figure::kPopulation, system, *best);
+  const auto per_update = [](const Entry* entry, std::uint64_t count) {
+    return static_cast<double>(count) / static_cast<double>(entry->work.updates);
+  };
+  return fmt::format(
+      "{} An update takes {:.1f} swaps and {:.2f} operations on cells at the best, {:.1f} and {:.2f} there.",
+      loss_text(results, figure::kPopulation, system, 300), per_update(at_best, at_best->work.cells.swaps),
+      per_update(at_best, at_best->work.cell_ops), per_update(there, there->work.cells.swaps),
+      per_update(there, there->work.cell_ops));
 }
 
 void add_population(std::vector<Claim>& claims, const Results& results) {
   for (const CellKind kind : {CellKind::kSegmented, CellKind::kBatch}) {
     const std::string system = system_name::grid(kind);
-    const std::string loss = fmt::format("Cells of about 300 cost {:.2f} times as much as the best.",
-                                         loss_at(results, figure::kPopulation, system, 300));
+    const std::string text = population_text(results, system);
     claims.push_back(with({.where = "3.1, 4.2",
                            .says = "About 300 objects per cell are best",
                            .what = fmt::format("objects per cell that cost least, {}", system),
                            .band = {150, 600},
-                           .why_less = loss + " Swaps per update fall with the cell's width, and a cell costs little "
-                                              "beside them here: it is found by hashing and kept in few allocations.",
-                           .why_more = loss + " Objects in several cells, which are drained in each, weigh more here "
-                                              "than swaps.",
+                           .why_less = text + " Operations on cells cost little here beside swaps.",
+                           .why_more = text + " Operations on cells cost much here beside swaps.",
                            .digits = 0},
                           best_x(results, figure::kPopulation, system)));
   }
 }
 
 void add_batch(std::vector<Claim>& claims, const Results& results) {
-  const auto swaps = [&]() -> std::optional<double> {
-    const auto entries = results.series(figure::kInsertWork, kBatchCell);
-    return entries.empty() ? std::nullopt : std::optional(swaps_per_event(*entries.back()));
-  };
   claims.push_back(
       with({.where = "3.2.1",
             .says = "Batch insertion and removal: O(k (m log m + n)); inserts are merged in, not swapped in",
             .what = "swaps per event in the largest cell, exact count",
             .band = {0, 0},
             .why_more = "Endpoints are swapped into place."},
-           swaps()));
+           swaps_at_last(results, kBatchCell)));
   claims.push_back(with({.where = "3.2.1",
                          .says = "... so for few events the time is at most linear in n",
                          .what = "exponent of time over n, 20 events",
@@ -98,6 +119,18 @@ void add_batch(std::vector<Claim>& claims, const Results& results) {
            results.times_faster(figure::kReplaced, 1, kBatchCell, system_name::one_cell(CellKind::kPlane))));
 }
 
+// What a box test takes in the smallest and the largest cell.
+std::string time_per_test_text(const Results& results) {
+  const auto entries = results.series(figure::kInsertWork, kSegmentedCell);
+  if (entries.empty()) return "";
+  const auto per_test = [](const Entry& entry) {
+    return 1e9 * median_seconds(entry) / entry.per_step(entry.work.cells.box_tests);
+  };
+  return fmt::format(
+      " Per test a step takes {:.0f} ns with {} objects and {:.0f} ns with {}: the boxes outgrow the caches.",
+      per_test(*entries.front()), entries.front()->x, per_test(*entries.back()), entries.back()->x);
+}
+
 void add_segmented(std::vector<Claim>& claims, const Results& results) {
   const auto tests = results.law(figure::kInsertWork, kSegmentedCell, tests_per_event);
   const std::string tests_text =
@@ -108,12 +141,12 @@ void add_segmented(std::vector<Claim>& claims, const Results& results) {
                   tests->exponent)
             : "";
   claims.push_back(with({.where = "3.2.2",
-                         .says = "Segmented lists: swaps per insert or erase are limited to a constant",
-                         .what = "exponent of swaps per event over n, exact counts",
-                         .band = {-0.1, 0.1},
-                         .why_less = "Swaps fall with n.",
+                         .says = "Segmented lists: swaps per insert or erase are limited to a constant, a segment's "
+                                 "length for each of its 2k endpoints",
+                         .what = "swaps per event in the largest cell, exact count",
+                         .band = {0, 6 * 32},
                          .why_more = "Swaps leave their segments."},
-                        results.law(figure::kInsertWork, kSegmentedCell, swaps_per_event)));
+                        swaps_at_last(results, kSegmentedCell)));
   claims.push_back(with({.where = "3.2.2",
                          .says = "... O(k m log n) in all",
                          .what = "exponent of box tests per event over n, exact counts",
@@ -126,29 +159,30 @@ void add_segmented(std::vector<Claim>& claims, const Results& results) {
                          .what = "exponent of time over n, 20 events",
                          .band = {-0.1, 0.35},
                          .why_less = "Time falls with n.",
-                         .why_more = tests_text},
+                         .why_more = tests_text + time_per_test_text(results)},
                         results.law(figure::kInsertWork, kSegmentedCell, median_seconds)));
-  claims.push_back(with({.where = "3.1",
-                         .says = "In a grid insertion and removal fall from O(k m n) to O(k m)",
-                         .what = "exponent of swaps per event over n, classic cells in a grid, exact counts",
-                         .band = {-0.2, 0.2},
-                         .why_less = "Larger scenes have fewer objects per cell.",
-                         .why_more = "Cells of small scenes hold fewer objects than those of large ones."},
-                        results.law(figure::kInsertWork, kClassicGrid, swaps_per_event)));
-  claims.push_back(with({.where = "3.1, 3.2.2",
-                         .says = "... also what segmented lists test",
-                         .what = "exponent of box tests per event over n, segmented cells in a grid, exact counts",
-                         .band = {-0.2, 0.2},
-                         .why_less = "Larger scenes have fewer objects per cell.",
-                         .why_more = "Cells of small scenes hold fewer objects than those of large ones."},
-                        results.law(figure::kInsertWork, kSegmentedGrid, tests_per_event)));
+  claims.push_back(
+      with({.where = "3.1",
+            .says = "In a grid insertion and removal fall from O(k m n) to O(k m)",
+            .what = "exponent of swaps per event over n from 8000 on, classic cells in a grid, exact counts",
+            .band = {-0.2, 0.2},
+            .why_less = "Larger scenes have fewer objects per cell.",
+            .why_more = "Cells of small scenes hold fewer objects than those of large ones."},
+           results.law(figure::kInsertWork, kClassicGrid, swaps_per_event, kLeastGrid)));
+  claims.push_back(
+      with({.where = "3.1, 3.2.2",
+            .says = "... also what segmented lists test",
+            .what = "exponent of box tests per event over n from 8000 on, segmented cells in a grid, exact counts",
+            .band = {-0.2, 0.2},
+            .why_less = "Larger scenes have fewer objects per cell.",
+            .why_more = "Cells of small scenes hold fewer objects than those of large ones."},
+           results.law(figure::kInsertWork, kSegmentedGrid, tests_per_event, kLeastGrid)));
 }
 
 void add_segment_size(std::vector<Claim>& claims, const Results& results) {
   const auto events = best_x(results, figure::kSegments, system_name::kSegmentsEvents);
   const auto sort = best_x(results, figure::kSegments, system_name::kSegmentsSort);
-  const std::string loss = fmt::format("32 endpoints cost {:.2f} times as much as the best.",
-                                       loss_at(results, figure::kSegments, system_name::kSegmentsEvents, 32));
+  const std::string loss = loss_text(results, figure::kSegments, system_name::kSegmentsEvents, 32);
   claims.push_back(with({.where = "3.2.2",
                          .says = "Segments of about 2^5 endpoints are best for inserts and erases",
                          .what = "capacity that costs least",

@@ -27,8 +27,12 @@ constexpr CellOptions kPresorted = {.kind = CellKind::kSegmented, .integration =
 
 SystemSpec cell_spec(CellKind kind) { return {one_cell(kind), Layout::kOneCell, cell_options(kind)}; }
 SystemSpec grid_spec(CellKind kind) { return {grid(kind), Layout::kGrid, cell_options(kind)}; }
+constexpr CellOptions kPresortedIfItPays = {.kind = CellKind::kSegmented, .integration = Integration::kAuto};
+
 SystemSpec presorted_cell() { return {system_name::kPresortedCell, Layout::kOneCell, kPresorted}; }
 SystemSpec presorted_grid() { return {system_name::kPresortedGrid, Layout::kGrid, kPresorted}; }
+SystemSpec auto_cell() { return {system_name::kAutoCell, Layout::kOneCell, kPresortedIfItPays}; }
+SystemSpec auto_grid() { return {system_name::kAutoGrid, Layout::kGrid, kPresortedIfItPays}; }
 SystemSpec octree_spec() { return {system_name::kOctree, Layout::kOctree}; }
 SystemSpec engine_spec() { return {system_name::kEngine, Layout::kEngine}; }
 
@@ -100,13 +104,22 @@ class Plans {
   std::vector<FigurePoint> points_;
 };
 
+// What one cell is given. Filling it takes the classic kind O(n^2) swaps.
+std::vector<SystemSpec> cells_for(double n, double classic_limit, double limit) {
+  std::vector<SystemSpec> systems;
+  if (n <= classic_limit) systems.push_back(cell_spec(kClassic));
+  if (n <= limit) systems = joined(systems, cell_specs({kBatch, kSegmented}));
+  return systems;
+}
+
 void plan_2(Plans& plans) {
-  const double one_cell_limit = plans.quick() ? 8000 : 32000;
-  const auto sizes = plans.either({1000, 2000, 4000, 8000, 16000, 32000, 64000, 128000}, {1000, 2000, 4000, 8000});
-  for (const double n : sizes) {
-    std::vector<SystemSpec> systems = grid_systems();
-    if (n <= one_cell_limit) systems = joined(cell_specs({kClassic, kBatch, kSegmented}), systems);
-    plans.add(figure::k2, n, paper_scene(n, 1, 0), systems, n * std::max(1.0, std::cbrt(n / 1000)));
+  const double classic_limit = plans.quick() ? 8000 : 64000;
+  const double limit = plans.quick() ? 32000 : 128000;
+  for (const double n :
+       plans.either({1000, 2000, 4000, 8000, 16000, 32000, 64000, 128000}, {1000, 2000, 4000, 8000, 16000, 32000})) {
+    const double cost_factor = n <= limit ? std::max(1.0, std::cbrt(n / 1000)) : 1;
+    plans.add(figure::k2, n, paper_scene(n, 1, 0), joined(cells_for(n, classic_limit, limit), grid_systems()),
+              n * cost_factor);
   }
 }
 
@@ -124,7 +137,7 @@ void plan_9(Plans& plans) {
                                    {2, 20, 40, 80, 120, 200, 400});
   for (const double count : events) {
     plans.add(figure::k9, count, paper_scene(3000, 0.05, count / 2 / 3000),
-              joined(cell_specs({kClassic, kBatch, kSegmented, kRows}), {presorted_cell()}), 3000);
+              joined(cell_specs({kClassic, kBatch, kSegmented, kRows}), {presorted_cell(), auto_cell()}), 3000);
   }
 }
 
@@ -132,16 +145,17 @@ void plan_10(Plans& plans) {
   const auto events =
       plans.either({0, 200, 500, 1000, 1500, 2000, 3000, 4000, 5000, 6000, 8000, 12000}, {0, 1000, 4000, 8000});
   for (const double count : events) {
-    plans.add(figure::k10, count, paper_scene(1e5, 0.1, count / 2 / 1e5), grid_systems(), 1e4 + count);
+    plans.add(figure::k10, count, paper_scene(1e5, 0.1, count / 2 / 1e5), joined(grid_systems(), {auto_grid()}),
+              1e4 + count);
   }
 }
 
 void plan_11(Plans& plans) {
-  const double one_cell_limit = plans.quick() ? 10000 : 20000;
+  const double classic_limit = plans.quick() ? 10000 : 50000;
+  const double limit = plans.quick() ? 10000 : 200000;
   for (const double n : plans.either({10000, 20000, 50000, 100000, 150000, 200000}, {10000, 50000, 200000})) {
-    std::vector<SystemSpec> systems = grid_systems();
-    if (n <= one_cell_limit) systems = joined(cell_specs({kClassic, kBatch, kSegmented}), systems);
-    plans.add(figure::k11, n, paper_scene(n, 0.1, 0.005), systems, 0.11 * n);
+    plans.add(figure::k11, n, paper_scene(n, 0.1, 0.005), joined(cells_for(n, classic_limit, limit), grid_systems()),
+              0.11 * n);
   }
 }
 
@@ -211,7 +225,7 @@ void plan_coherence(Plans& plans) {
 
 void plan_clumped(Plans& plans) {
   const double n = plans.quick() ? 10000 : 50000;
-  for (const double share : plans.either({0.01, 0.05, 0.1}, {0.1})) {
+  for (const double share : plans.either({0.01, 0.05, 0.1}, {0.01, 0.1})) {
     plans.add(
         figure::kClumped, share,
         fmt::format("clusters:n={},moving={},churn=0.005,density=0.05,speed=0.1,clusters=16,spread=0.1", n, share),
@@ -235,9 +249,10 @@ void plan_work(Plans& plans) {
   for (const double n : plans.either({1000, 2000, 4000, 8000, 16000, 32000}, {1000, 2000, 4000})) {
     plans.add(figure::kFlat, n, paper_scene(n, 1, 0) + ",dim=2", cell_specs({kClassic}), 3 * n);
   }
-  for (const double n : plans.either({1000, 2000, 4000, 8000, 16000, 32000}, {1000, 2000, 4000})) {
+  for (const double n :
+       plans.either({1000, 2000, 4000, 8000, 16000, 32000, 64000}, {1000, 2000, 4000, 8000, 16000, 32000})) {
     plans.add(figure::kInsertWork, n, paper_scene(n, 0, 10 / n),
-              joined(cell_specs({kClassic, kBatch, kSegmented}), grid_specs({kClassic, kSegmented})), n);
+              joined(cells_for(n, plans.quick() ? 8000 : 32000, n), grid_specs({kClassic, kSegmented})), n);
   }
   plans.add(figure::kQuiet, 10000, paper_scene(10000, 0, 0), grid_specs({kClassic, kBatch, kSegmented}), 10000);
 }

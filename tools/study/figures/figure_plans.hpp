@@ -35,6 +35,8 @@ inline constexpr const char* kEngine = "engine, as it chooses";
 inline constexpr const char* kPresortedCell = "segmented presorted, one cell";
 inline constexpr const char* kPresortedGrid = "segmented presorted, grid";
 inline constexpr const char* kUniformSuffix = ", uniform";  ///< in kClumped: the same without clumps
+inline constexpr const char* kAutoCell = "segmented presorted if it pays, one cell";
+inline constexpr const char* kAutoGrid = "segmented presorted if it pays, grid";
 // The workloads of kSegments.
 inline constexpr const char* kSegmentsEvents = "ten inserts and ten erases";
 inline constexpr const char* kSegmentsSort = "a fifth of 3000 moving";

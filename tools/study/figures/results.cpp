@@ -53,11 +53,12 @@ std::optional<Spread> Results::times_faster_at_last(const std::string& figure, c
   return last;
 }
 
-std::optional<PowerLaw> Results::law(const std::string& figure, const std::string& system, const Figure& value) const {
+std::optional<PowerLaw> Results::law(const std::string& figure, const std::string& system, const Figure& value,
+                                     double least_x) const {
   std::vector<double> x;
   std::vector<double> y;
   for (const Entry* entry : series(figure, system)) {
-    if (!(value(*entry) > 0) || !(entry->x > 0)) continue;
+    if (!(value(*entry) > 0) || !(entry->x > 0) || entry->x < least_x) continue;
     x.push_back(entry->x);
     y.push_back(value(*entry));
   }

@@ -44,9 +44,9 @@ class Results {
   [[nodiscard]] std::optional<Spread> times_faster_at_last(const std::string& figure, const std::string& slow,
                                                            const std::string& fast) const;
 
-  /// The power law of `value` over x; absent for fewer than three points with a positive value.
-  [[nodiscard]] std::optional<PowerLaw> law(const std::string& figure, const std::string& system,
-                                            const Figure& value) const;
+  /// The power law of `value` over x from `least_x` on; absent for fewer than three points with a positive value.
+  [[nodiscard]] std::optional<PowerLaw> law(const std::string& figure, const std::string& system, const Figure& value,
+                                            double least_x = 0) const;
 
   /// The least x from which on `first` takes longer than `second`, between two points by the logarithm of the ratio;
   /// infinity when it never does, absent when nothing was measured. 0: it does at the first point.
