@@ -136,6 +136,11 @@ class Twins {
   }
 
   void step() {
+    std::vector<Key> keys;
+    for (Key key = 0; key < 50; ++key) keys.push_back(2'000'000 + key);
+    std::vector<Box2> boxes = some_boxes(keys.size());
+    boxes.back().min[0] = std::numeric_limits<float>::infinity();
+    expect_refused([&] { bulk_.insert(keys, boxes); }, "min > max");  // must not be heard of in the step
     const auto& events = bulk_.step();
     if (const std::string finding = client_.hear(events); !finding.empty()) throw Finding(finding);
     require(single_.step() == events, "other events than one by one");

@@ -139,6 +139,7 @@ int probe_following(TestConfig config) {
     if (cell_size > 0 && stats.cell_size > cell_size) {
       findings.push_back("follow: cells are still " + std::to_string(stats.cell_size) + " wide");
     }
+    if (number == 1 && stats.step.regrids != 1) findings.push_back("follow: many have come, and nothing follows");
     return findings.empty() ? 0 : report("Following", number, findings);
   };
   constexpr std::uint64_t kFew = 60;
