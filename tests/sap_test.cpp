@@ -41,7 +41,11 @@ constexpr NamedKind kKinds[] = {{"Rows", {CellKind::kRows}},
                                 {"Segmented4", {CellKind::kSegmented, 4}},
                                 {"Segmented5", {CellKind::kSegmented, 5}},
                                 {"Segmented8", {CellKind::kSegmented, 8}},
-                                {"Segmented32", {CellKind::kSegmented, 32}}};
+                                {"Segmented32", {CellKind::kSegmented, 32}},
+                                {"OneByOne4", {CellKind::kSegmented, 4, Integration::kOneByOne}},
+                                {"OneByOne16", {CellKind::kSegmented, 16, Integration::kOneByOne}},
+                                {"Presorted4", {CellKind::kSegmented, 4, Integration::kPresorted}},
+                                {"Presorted16", {CellKind::kSegmented, 16, Integration::kPresorted}}};
 
 struct Space {
   const char* name;

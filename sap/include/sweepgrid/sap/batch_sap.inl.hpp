@@ -183,6 +183,7 @@ void BatchSap<Scalar, Dim>::write_updates(int axis, const Ops& ops) {
 template <class Scalar, int Dim>
 void BatchSap<Scalar, Dim>::sort_in_place(int axis, Drain& drain) {
   FloatingList& list = lists_[axis];
+  drain.counters.endpoints_visited += list.end - list.begin;
   End* const base = list.storage.data();
   for (std::uint32_t place = list.begin + 1; place < list.end; ++place) {
     const End end = base[place];
@@ -249,6 +250,8 @@ void BatchSap<Scalar, Dim>::integrate_axis(int axis, const Ops& ops, SweepSets* 
   std::sort(erases.begin(), erases.end());
 
   FloatingList& list = lists_[axis];
+  drain.counters.endpoints_sorted += inserts.size() + erases.size();
+  drain.counters.endpoints_visited += list.end - list.begin + inserts.size();
   const auto added = static_cast<std::uint32_t>(inserts.size());
   const auto count = static_cast<std::uint32_t>(list.end - list.begin + added - erases.size());
   const bool forward = list.begin >= added;

@@ -21,7 +21,7 @@ std::unique_ptr<SweepAndPrune<Scalar, Dim>> make_cell(const CellOptions& options
     case CellKind::kBatch:
       return std::make_unique<BatchSap<Scalar, Dim>>();
     case CellKind::kSegmented:
-      return std::make_unique<SegmentedSap<Scalar, Dim>>(options.segment_capacity);
+      return std::make_unique<SegmentedSap<Scalar, Dim>>(options.segment_capacity, options.integration);
     case CellKind::kClassic:
       return std::make_unique<ClassicSap<Scalar, Dim>>();
     case CellKind::kPlane:

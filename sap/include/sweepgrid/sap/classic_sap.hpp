@@ -109,6 +109,7 @@ template <class Precedes>
 void ClassicSap<Scalar, Dim>::sort(int axis, Precedes precedes, std::vector<OverlapDelta>& deltas,
                                    SapCounters& counters) {
   std::vector<Key>& list = lists_[axis];
+  counters.endpoints_visited += list.size();
   for (std::size_t from = 1; from < list.size(); ++from) {
     const Key key = list[from];
     std::size_t to = from;

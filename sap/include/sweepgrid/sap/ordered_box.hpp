@@ -67,6 +67,16 @@ struct OrderedBox {
     return overlap != 0;
   }
 
+  /// Without a lower or an upper end, or both, on one axis.
+  [[nodiscard]] OrderedBox opened(int axis, bool lower, bool upper) const {
+    OrderedBox open;
+    for (int d = 0; d < Dim; ++d) {
+      open.min[d] = d == axis && lower ? Bits{0} : min[d];
+      open.max[d] = d == axis && upper ? static_cast<Bits>(~Bits{0}) : max[d];
+    }
+    return open;
+  }
+
   [[nodiscard]] bool overlaps(const OrderedBox& other) const { return overlaps_beside(-1, other); }
 
   friend bool operator==(const OrderedBox&, const OrderedBox&) = default;

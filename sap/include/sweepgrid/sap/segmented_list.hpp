@@ -1,9 +1,10 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <utility>
+#include <span>
 #include <vector>
 
 #include <sweepgrid/sap/endpoint.hpp>
@@ -12,8 +13,8 @@
 namespace sweepgrid {
 
 /// The interval list of one axis as a linked list of bounded segments with a directory for binary search (section
-/// 3.2.2, the paper's chunks). Knows endpoints and segments only; what a split or merge means for checkpoint sets is
-/// its owner's business.
+/// 3.2.2, the paper's chunks). Knows endpoints and segments only; what a cut or a merge means for checkpoint sets is
+/// its owner's business. No segment is empty, but the only one of an empty list, and one that is about to be merged.
 template <class Scalar>
 class SegmentedList {
  public:
@@ -32,34 +33,55 @@ class SegmentedList {
   [[nodiscard]] End& at(Place place) { return ends(place.segment)[place.offset]; }
   [[nodiscard]] End* ends(SegmentId segment) { return pool_.data() + std::size_t{segment} * capacity_; }
   [[nodiscard]] const End* ends(SegmentId segment) const { return pool_.data() + std::size_t{segment} * capacity_; }
+  [[nodiscard]] End last(SegmentId segment) const { return ends(segment)[count(segment) - 1]; }
   [[nodiscard]] std::uint32_t count(SegmentId segment) const { return links_[segment].count; }
   [[nodiscard]] SegmentId previous(SegmentId segment) const { return links_[segment].previous; }
   [[nodiscard]] SegmentId next(SegmentId segment) const { return links_[segment].next; }
   [[nodiscard]] SegmentId front() const { return directory_.empty() ? kNone : directory_.front(); }
-  [[nodiscard]] bool full(SegmentId segment) const { return count(segment) == capacity_; }
   [[nodiscard]] std::uint32_t capacity() const { return capacity_; }
 
   /// Segments have ids below this.
   [[nodiscard]] std::size_t id_bound() const { return links_.size(); }
 
-  /// The segment that `end` belongs to: the earliest with a greater endpoint, else the last. Creates the first segment
-  /// of an empty list. Precondition: sorted. O(log segments).
-  SegmentId segment_for(End end);
-
-  /// Offset of `end` in its segment. Precondition: it is there.
-  [[nodiscard]] std::uint32_t offset(SegmentId segment, End end) const {
-    const End* first = ends(segment);
-    return static_cast<std::uint32_t>(std::find(first, first + count(segment), end) - first);
+  /// The segment that `end` belongs to: the last that begins before it, else the first. Creates the first segment of an
+  /// empty list. Precondition: sorted. O(log segments).
+  SegmentId segment_for(End end) {
+    if (directory_.empty()) directory_.push_back(allocate());
+    return directory_[directory_index(end)];
   }
 
-  /// Puts `end` in order into a segment that is not full.
-  void insert(SegmentId segment, End end);
+  /// Comparisons that segment_for() takes.
+  [[nodiscard]] std::uint32_t search_steps() const {
+    return static_cast<std::uint32_t>(std::bit_width(directory_.size()));
+  }
 
-  /// Takes `end` out of its segment, which may be left empty.
-  void erase(SegmentId segment, End end);
+  /// Whether `end` lies before the segments that follow `segment`.
+  [[nodiscard]] bool before_next(SegmentId segment, End end) const {
+    return next(segment) == kNone || end < ends(next(segment))[0];
+  }
 
-  /// Moves the upper half of a segment to a new one after it, and returns that. Precondition: sorted.
-  SegmentId split(SegmentId segment);
+  /// Offset of the first endpoint in a segment that is not less than `end`. Precondition: sorted, not empty.
+  [[nodiscard]] std::uint32_t offset(SegmentId segment, End end) const {
+    const End* const first = ends(segment);
+    const End* base = first;
+    for (std::uint32_t rest = count(segment); rest > 0;) {
+      // A product, lest it become a branch: where an endpoint lies in its segment cannot be predicted.
+      const std::uint32_t half = (rest + 1) / 2;
+      base += half * std::uint32_t{base[half - 1] < end};
+      rest -= half;
+    }
+    return static_cast<std::uint32_t>(base - first);
+  }
+
+  /// Puts sorted endpoints in order into a segment that has room for them.
+  void insert(SegmentId segment, std::span<const End> added);
+
+  /// Takes sorted endpoints out of their segment, which may be left empty.
+  void erase(SegmentId segment, std::span<const End> gone);
+
+  /// Spreads sorted endpoints evenly over a segment and `pieces` - 1 new ones after it; what it held is lost. Returns
+  /// the last piece.
+  SegmentId spread(SegmentId segment, std::span<const End> sorted, std::size_t pieces);
 
   /// Appends the endpoints of the segment after `segment` to it and drops that. Precondition: they fit.
   void merge_next(SegmentId segment);
@@ -84,7 +106,7 @@ class SegmentedList {
   };
 
   SegmentId allocate();
-  [[nodiscard]] std::size_t directory_index(SegmentId segment) const;
+  [[nodiscard]] std::size_t directory_index(End end) const;
 
   std::uint32_t capacity_;
   std::vector<End> pool_;  // segment s owns [s * capacity, (s + 1) * capacity)
@@ -94,47 +116,63 @@ class SegmentedList {
 };
 
 template <class Scalar>
-auto SegmentedList<Scalar>::segment_for(End end) -> SegmentId {
-  if (directory_.empty()) directory_.push_back(allocate());
-  const auto found = std::partition_point(directory_.begin(), directory_.end() - 1,
-                                          [&](SegmentId segment) { return ends(segment)[count(segment) - 1] < end; });
-  return *found;
-}
-
-template <class Scalar>
-void SegmentedList<Scalar>::insert(SegmentId segment, End end) {
+void SegmentedList<Scalar>::insert(SegmentId segment, std::span<const End> added) {
   End* const first = ends(segment);
-  std::uint32_t offset = links_[segment].count++;
-  for (; offset > 0 && end < first[offset - 1]; --offset) first[offset] = first[offset - 1];
-  first[offset] = end;
+  std::size_t kept = count(segment);
+  std::size_t left = added.size();
+  links_[segment].count += static_cast<std::uint32_t>(left);
+  while (left > 0) {
+    const bool move = kept > 0 && added[left - 1] < first[kept - 1];
+    const std::size_t to = kept + left - 1;
+    first[to] = move ? first[--kept] : added[--left];
+  }
 }
 
 template <class Scalar>
-void SegmentedList<Scalar>::erase(SegmentId segment, End end) {
+void SegmentedList<Scalar>::erase(SegmentId segment, std::span<const End> gone) {
   End* const first = ends(segment);
-  std::copy(first + offset(segment, end) + 1, first + count(segment), first + offset(segment, end));
-  --links_[segment].count;
+  const std::uint32_t before = count(segment);
+  std::uint32_t to = offset(segment, gone.front());
+  std::size_t next_gone = 0;
+  for (std::uint32_t from = to; from < before; ++from) {
+    if (next_gone < gone.size() && first[from] == gone[next_gone]) {
+      ++next_gone;
+    } else {
+      first[to++] = first[from];
+    }
+  }
+  links_[segment].count = to;
 }
 
 template <class Scalar>
-auto SegmentedList<Scalar>::split(SegmentId segment) -> SegmentId {
-  const std::size_t index = directory_index(segment);
-  const SegmentId upper = allocate();
-  const std::uint32_t kept = count(segment) / 2;
-  std::copy(ends(segment) + kept, ends(segment) + count(segment), ends(upper));
-  links_[upper] = {count(segment) - kept, segment, next(segment)};
-  if (next(segment) != kNone) links_[next(segment)].previous = upper;
-  links_[segment].next = upper;
-  links_[segment].count = kept;
-  directory_.insert(directory_.begin() + static_cast<std::ptrdiff_t>(index) + 1, upper);
-  return upper;
+auto SegmentedList<Scalar>::spread(SegmentId segment, std::span<const End> sorted, std::size_t pieces) -> SegmentId {
+  const std::size_t index = directory_index(ends(segment)[0]);
+  directory_.insert(directory_.begin() + static_cast<std::ptrdiff_t>(index) + 1, pieces - 1, kNone);
+  const SegmentId after = next(segment);
+  SegmentId last = segment;
+  for (std::size_t piece = 0; piece < pieces; ++piece) {
+    const SegmentId to = piece == 0 ? segment : allocate();
+    const auto part = sorted.subspan(sorted.size() * piece / pieces,
+                                     sorted.size() * (piece + 1) / pieces - sorted.size() * piece / pieces);
+    std::copy(part.begin(), part.end(), ends(to));
+    links_[to].count = static_cast<std::uint32_t>(part.size());
+    if (piece > 0) {
+      links_[to].previous = last;
+      links_[last].next = to;
+      directory_[index + piece] = to;
+    }
+    last = to;
+  }
+  links_[last].next = after;
+  if (after != kNone) links_[after].previous = last;
+  return last;
 }
 
 template <class Scalar>
 void SegmentedList<Scalar>::merge_next(SegmentId segment) {
   const SegmentId gone = next(segment);
-  // Before the counts change: an empty segment has no endpoint to be found by, but its neighbour in the list does.
-  const std::size_t index = count(segment) > 0 ? directory_index(segment) + 1 : directory_index(gone);
+  // One of the two may be empty; what it held last still tells where it is.
+  const std::size_t index = directory_index(ends(gone)[0]);
   std::copy(ends(gone), ends(gone) + count(gone), ends(segment) + count(segment));
   links_[segment].count += count(gone);
   links_[segment].next = next(gone);
@@ -156,15 +194,16 @@ auto SegmentedList<Scalar>::allocate() -> SegmentId {
   return static_cast<SegmentId>(links_.size() - 1);
 }
 
-// By a key search, so that links need no index that every split would have to renumber. One segment may be empty, just
-// before it is merged: it lies before the key when the segment after it does, or is the one sought.
+// By a key search, so that links need no index that every split would have to renumber.
 template <class Scalar>
-std::size_t SegmentedList<Scalar>::directory_index(SegmentId segment) const {
-  const End key = ends(segment)[0];
-  const auto found = std::partition_point(directory_.begin(), directory_.end(), [&](SegmentId other) {
-    return count(other) > 0 ? ends(other)[count(other) - 1] < key : next(other) != kNone && ends(next(other))[0] <= key;
-  });
-  return static_cast<std::size_t>(found - directory_.begin());
+std::size_t SegmentedList<Scalar>::directory_index(End end) const {
+  std::size_t base = 0;
+  for (std::size_t rest = directory_.size() - 1; rest > 0;) {
+    const std::size_t half = (rest + 1) / 2;
+    base += half * std::size_t{ends(directory_[base + half])[0] <= end};
+    rest -= half;
+  }
+  return base;
 }
 
 }  // namespace sweepgrid

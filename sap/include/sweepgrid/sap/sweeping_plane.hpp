@@ -88,6 +88,8 @@ std::vector<PairKey> SweepingPlane<Scalar, Dim>::sweep(int axis, SapCounters& co
   std::vector<PairKey> pairs;
   std::vector<Slot> sweep_set;
   std::vector<std::size_t> position(slots_.slot_bound());  // in the sweep set, by slot
+  counters.endpoints_visited += 2 * size();
+  counters.endpoints_sorted += 2 * size();
   for (const Endpoint<Scalar> endpoint : sorted_endpoints(axis)) {
     const Slot slot = endpoint.owner();
     if (endpoint.is_max()) {
