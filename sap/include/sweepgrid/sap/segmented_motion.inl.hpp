@@ -4,35 +4,14 @@
 #include <span>
 
 #include <sweepgrid/sap/invariant.hpp>
-#include <sweepgrid/sap/prefetch.hpp>
 #include <sweepgrid/sap/segmented_sap.hpp>
 
 namespace sweepgrid {
 
-// The next object's segments are fetched while one is sorted, as they lie anywhere.
-template <class Scalar, int Dim>
-void SegmentedSap<Scalar, Dim>::local_sort(const typename Ops::Entries& entries, Drain& drain) {
-  for (std::size_t i = 0; i < entries.size(); ++i) {
-    if (i + 2 < entries.size()) sweepgrid::prefetch(&resting_[entries[i + 2].slot], sizeof(Resting));
-    if (i + 1 < entries.size()) prefetch_segments(entries[i + 1].slot);
-    sort_one(entries[i].slot, entries[i].op->box, drain);
-  }
-}
-
-template <class Scalar, int Dim>
-void SegmentedSap<Scalar, Dim>::prefetch_segments(Slot slot) const {
-  for (int axis = 0; axis < Dim; ++axis) {
-    const List& list = lists_[axis];
-    for (const SegmentId segment : {resting_[slot].min_segment[axis], resting_[slot].max_segment[axis]}) {
-      sweepgrid::prefetch(list.ends(segment), list.capacity() * sizeof(End));
-    }
-  }
-}
-
 // Trailing endpoint first: a box that moves by more than its width is inverted in flight and so overlaps nothing that
 // it jumps over, which saves a +1 and a -1 for each.
 template <class Scalar, int Dim>
-void SegmentedSap<Scalar, Dim>::sort_one(Slot slot, const OrderedBoxType& box, Drain& drain) {
+void SegmentedSap<Scalar, Dim>::local_sort(Slot slot, const OrderedBoxType& box, Drain& drain) {
   for (int axis = 0; axis < Dim; ++axis) {
     const End new_min = End::min_of(slot, box.min[axis]);
     const End new_max = End::max_of(slot, box.max[axis]);

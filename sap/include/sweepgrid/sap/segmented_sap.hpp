@@ -92,9 +92,7 @@ class SegmentedSap final : public SweepAndPrune<Scalar, Dim> {
   void test_owners(std::span<const End> ends, bool of_maxes, const OrderedBoxType& box, Drain& drain, Hit hit) const;
 
   // Updates (segmented_motion.inl.hpp).
-  void local_sort(const typename Ops::Entries& entries, Drain& drain);
-  void prefetch_segments(Slot slot) const;
-  void sort_one(Slot slot, const OrderedBoxType& box, Drain& drain);
+  void local_sort(Slot slot, const OrderedBoxType& box, Drain& drain);
   void global_sort(const Ops& ops, Drain& drain);
   void sort_axis(int axis, Drain& drain);
   /// Sets one coordinate to `end` and moves it to its place, while everything else is in order.

@@ -15,7 +15,7 @@ namespace sweepgrid {
 
 namespace segmented_sap {
 /// Measured (sap/README.md): a global sort wins when at least one in this many residents moves.
-inline constexpr std::size_t kGlobalSortShare = 4;
+inline constexpr std::size_t kGlobalSortShare = 2;
 }  // namespace segmented_sap
 
 template <class Scalar, int Dim>
@@ -44,7 +44,7 @@ void SegmentedSap<Scalar, Dim>::drain(std::span<const Op> ops, std::vector<Overl
     global_sort(resolved, drain);
   } else {
     ++counters.local_sorts;
-    local_sort(resolved.updates, drain);
+    for (const auto& entry : resolved.updates) local_sort(entry.slot, entry.op->box, drain);
   }
   insert(resolved.inserts, drain);
   counters.deltas += deltas.size() - deltas_before;
