@@ -15,7 +15,7 @@ namespace sweepgrid::baselines {
 /// Settings of a DynamicOctree; the default is measured (tools/baselines/README.md).
 struct OctreeOptions {
   /// A leaf with more boxes than this is cut in eight; at least 1.
-  int leaf_size = 16;
+  int leaf_size = 32;
 };
 
 /// The paper's baseline (section 4): a dynamic octree after Vemuri, Cao and Chen (1998). Its nodes hold growable arrays

@@ -126,15 +126,11 @@ void SegmentedList<Scalar>::insert(SegmentId segment, std::span<const End> added
 template <class Scalar>
 void SegmentedList<Scalar>::erase(SegmentId segment, std::span<const End> gone) {
   End* const first = ends(segment);
-  const std::uint32_t before = count(segment);
   std::uint32_t to = offset(segment, gone.front());
-  std::size_t next_gone = 0;
-  for (std::uint32_t from = to; from < before; ++from) {
-    if (next_gone < gone.size() && first[from] == gone[next_gone]) {
-      ++next_gone;
-    } else {
-      first[to++] = first[from];
-    }
+  for (std::uint32_t from = to; from < count(segment); ++from) {
+    const bool goes = !gone.empty() && first[from] == gone.front();
+    if (!goes) first[to++] = first[from];
+    gone = gone.subspan(goes ? 1 : 0);
   }
   links_[segment].count = to;
 }
@@ -147,8 +143,8 @@ auto SegmentedList<Scalar>::spread(SegmentId segment, std::span<const End> sorte
   SegmentId last = segment;
   for (std::size_t piece = 0; piece < pieces; ++piece) {
     const SegmentId to = piece == 0 ? segment : allocate();
-    const auto part = sorted.subspan(sorted.size() * piece / pieces,
-                                     sorted.size() * (piece + 1) / pieces - sorted.size() * piece / pieces);
+    const std::size_t begin = sorted.size() * piece / pieces;
+    const auto part = sorted.subspan(begin, sorted.size() * (piece + 1) / pieces - begin);
     std::copy(part.begin(), part.end(), ends(to));
     links_[to].count = static_cast<std::uint32_t>(part.size());
     if (piece > 0) {
