@@ -10,8 +10,8 @@ import {axisText, isNumber, numberText, spreadText, withUnit} from "./format.js"
 import {heatMapHeight, heatMapOption, heatMapWidth} from "./heat_map.js";
 import {axisOption, legendText, lineChartSeries, seriesLooks} from "./line_chart.js";
 import {tableElement} from "./table.js";
-import {colours, isPrinting, onThemeChange, swatch} from "./theme.js";
-import {groupColour, spansByGroup, timelineHeight, timelineOption, timelineScale} from "./timeline.js";
+import {colours, isPrinting, onThemeChange, seriesColour, swatch} from "./theme.js";
+import {spansByGroup, timelineHeight, timelineOption, timelineScale} from "./timeline.js";
 
 use([CanvasRenderer, CustomChart, DataZoomInsideComponent, DataZoomSliderComponent, GridComponent, LegendComponent,
   LineChart, SVGRenderer, ScatterChart, TooltipComponent, VisualMapContinuousComponent]);
@@ -164,7 +164,7 @@ export function heatMapFigure(map) {
 export function timelineFigure(timeline) {
   const {unit, perSecond} = timelineScale(timeline);
   const groups = spansByGroup(timeline);
-  const look = (index) => swatch({colour: groupColour(index), box: true});
+  const look = (index) => swatch({colour: seriesColour(index), box: true});
   const {legend, connect} = legendOf(timeline.groups, timeline.groups, look);
   const formatter = ({seriesIndex, dataIndex}) => {
     const {lane, start, duration, group, label} = groups[seriesIndex][dataIndex];

@@ -1,11 +1,10 @@
 // Curves over numbers: what ECharts is told of a LineChart.
 
 import {axisText, isNumber, tickText} from "./format.js";
-import {colours, symbols} from "./theme.js";
+import {colours, seriesColour, symbols} from "./theme.js";
 
 // How each series looks, also in legends: the same in every place.
 export function seriesLooks(series) {
-  const palette = colours().series;
   const looks = new Map();
   let next = 0;
   for (const one of series) {
@@ -13,7 +12,7 @@ export function seriesLooks(series) {
     const index = like ? like.index : next++;
     looks.set(one.name, {
       index,
-      colour: palette[index % palette.length],
+      colour: seriesColour(index),
       symbol: one.style === "fitted" ? undefined : index % symbols.length,
       hollow: one.style === "simulated",
       dash: {measured: "none", simulated: "6 4", fitted: "1 3", front: "none"}[one.style],
@@ -54,7 +53,8 @@ function logTicks(chart, side, [low, high]) {
 
 // An axis that does not begin at a tick would leave its first stretch without a label.
 function logAxis(chart, side) {
-  const [low, high] = extent(chart, side);
+  let [low, high] = extent(chart, side);
+  if (low === high) [low, high] = [low / 2, high * 2];
   const all = logTicks(chart, side, [low, high]);
   const min = Math.max(...all.filter((tick) => tick <= low * 1.0001), low / 10);
   const max = Math.min(...all.filter((tick) => tick >= high * 0.9999), high * 10);
@@ -62,7 +62,7 @@ function logAxis(chart, side) {
   return {
     type: "log",
     min,
-    max: max > min ? max : min * 10,
+    max,
     axisLabel: {customValues: ticks},
     axisTick: {customValues: ticks},
     splitLine: {customValues: ticks},

@@ -63,9 +63,16 @@ function tableFigure(table) {
 const figuresOf = (section) => [...section.charts.map(lineChartFigure), ...section.maps.map(heatMapFigure),
   ...section.timelines.map(timelineFigure), ...section.tables.map(tableFigure)];
 
+const itemsOf = (section) => [...section.charts, ...section.maps, ...section.timelines, ...section.tables];
+
+// One figure that is called as its section is.
+const isAlone = (section) => itemsOf(section).length === 1 && itemsOf(section)[0].title === section.title;
+
 function sectionElement(section, index) {
   const figures = figuresOf(section);
   starts.push(...figures.map(({start}) => start));
+  // A title told twice is for those who hear the page only.
+  if (isAlone(section)) figures[0].element.querySelector("h3").classList.add("heard");
   return element("section", {id: `section-${index + 1}`}, element("h2", {}, ...inline(section.title)),
     ...paragraphs(section.text), element("div", {class: "figures"}, ...figures.map((one) => one.element)));
 }
@@ -73,7 +80,7 @@ function sectionElement(section, index) {
 function contents() {
   const entry = (id, title) => element("a", {href: `#${id}`}, ...inline(title));
   const list = report.sections.map((section, index) => {
-    const items = [...section.charts, ...section.maps, ...section.timelines, ...section.tables];
+    const items = isAlone(section) ? [] : itemsOf(section);
     return element("li", {}, entry(`section-${index + 1}`, section.title),
       element("ul", {}, ...items.map(({id, title}) => element("li", {}, entry(id, title)))));
   });

@@ -18,7 +18,8 @@ export function compareCells(a, b) {
 }
 
 function cellElement(cell, isNumeric) {
-  const spread = isNumber(cell.low) && isNumber(cell.high) ?
+  // Some texts tell the spread themselves.
+  const spread = isNumber(cell.low) && isNumber(cell.high) && !/ to /.test(cell.text) ?
     element("small", {class: "spread"}, `${numberText(cell.low)} to ${numberText(cell.high)}`) : undefined;
   return element("td", {class: isNumeric ? "number" : undefined}, ...inline(cell.text), spread);
 }

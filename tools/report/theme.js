@@ -39,6 +39,17 @@ export const colours = () => (isDark() && !isPrinting() ? dark : light);
 let printAsked = false;
 export const isPrinting = () => printAsked || printing.matches;
 
+const parts = (colour) => [1, 3, 5].map((at) => parseInt(colour.slice(at, at + 2), 16));
+
+// From the ninth on, the same colours come again, half as strong.
+export function seriesColour(index) {
+  const {series, paper} = colours();
+  const colour = series[index % series.length];
+  if (index < series.length) return colour;
+  const [own, behind] = [parts(colour), parts(paper)];
+  return `rgb(${own.map((part, at) => Math.round((part + behind[at]) / 2)).join(",")})`;
+}
+
 // Calls `redraw` whenever what the two above return has changed.
 export function onThemeChange(redraw) {
   preference.addEventListener("change", redraw);

@@ -2,15 +2,13 @@
 
 import {graphic} from "echarts/core";
 import {numberText, timeScale} from "./format.js";
-import {colours, isPrinting} from "./theme.js";
+import {colours, isPrinting, seriesColour} from "./theme.js";
 
 const laneHeight = (timeline) => Math.min(28, Math.max(7, 640 / timeline.lanes.length));
 export const timelineHeight = (timeline) => Math.round(timeline.lanes.length * laneHeight(timeline)) + 90;
 
 export const timelineScale = ({spans}) =>
   timeScale(spans.reduce((longest, {start, duration}) => Math.max(longest, start + duration), 0));
-
-export const groupColour = (group) => colours().series[group % colours().series.length];
 
 // The spans of each group, which is a series of its own so that legends can switch it.
 export function spansByGroup(timeline) {
@@ -74,7 +72,7 @@ export function timelineOption(timeline) {
     series: spansByGroup(timeline).map((spans, group) => ({
       name: timeline.groups[group],
       type: "custom",
-      renderItem: spanItem(groupColour(group)),
+      renderItem: spanItem(seriesColour(group)),
       encode: {x: [1, 2], y: 0},
       data: spans.map(({lane, start, duration}) => [lane, start * perSecond, (start + duration) * perSecond]),
     })),
