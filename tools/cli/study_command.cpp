@@ -4,6 +4,7 @@
 
 #include "study/figures/figures_study.hpp"
 #include "study/scaling/scaling_study.hpp"
+#include "study/stability/stability_study.hpp"
 #include "study/study_options.hpp"
 
 namespace sweepgrid {
@@ -29,6 +30,7 @@ StudyCommand::StudyCommand(CLI::App& app)
   command_->require_subcommand(1);
   add_figures();
   add_scaling();
+  add_stability();
 }
 
 bool StudyCommand::run() const {
@@ -64,6 +66,13 @@ void StudyCommand::add_scaling() {
   command->add_option("--trace", options->trace, "Write the tasks of a step to FILE, for Perfetto or chrome://tracing")
       ->type_name("FILE");
   studies_.push_back({command, [options] { return study::scaling_study(*options); }});
+}
+
+void StudyCommand::add_stability() {
+  CLI::App* command = command_->add_subcommand("stability", "Where methods break: cost and exactness in hard scenes");
+  const auto options = std::make_shared<study::StudyOptions>();
+  add_study_options(*command, *options);
+  studies_.push_back({command, [options] { return study::stability_study(*options); }});
 }
 
 }  // namespace sweepgrid

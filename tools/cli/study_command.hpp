@@ -28,6 +28,7 @@ class StudyCommand {
 
   void add_figures();
   void add_scaling();
+  void add_stability();
 
   CLI::App* command_;
   std::vector<Study> studies_;
