@@ -69,6 +69,20 @@ std::vector<SystemSpec> grid_systems() {
   return joined(grid_specs({kClassic, kBatch, kSegmented, kRows}), {presorted_grid(), engine_spec(), octree_spec()});
 }
 
+/// What a point's scene asks of a system.
+struct Load {
+  double objects;  // in all
+  double touched;  // in a step: moved, inserted, erased, or passed over in a cell's lists
+};
+
+// Roughly; only for the time that is left. A cell's swaps grow with n^(2/3) for each update, and filling it takes the
+// classic kind 3 n^2 swaps.
+double expected_seconds(const SystemSpec& spec, const Load& load, double steps) {
+  if (spec.layout != Layout::kOneCell) return 1e-6 * load.objects + 4e-7 * load.touched * steps;
+  const double start = spec.cell.kind == kClassic ? 2e-9 * load.objects * load.objects : 1e-6 * load.objects;
+  return start + 1.5e-7 * load.touched * steps * std::pow(load.objects / 1000, 2.0 / 3);
+}
+
 /// Collects points; the amount of work is chosen here.
 class Plans {
  public:
@@ -80,20 +94,21 @@ class Plans {
   }
   [[nodiscard]] bool quick() const { return quick_; }
 
-  // A point where all systems have the same x. `objects_per_step`: about how many are touched in a step.
-  void add(const char* figure, double x, const std::string& scene, std::vector<SystemSpec> systems,
-           double objects_per_step) {
-    add_contest(figure, fmt::format("{}", x), scene, at(x, std::move(systems)), objects_per_step);
+  // A point where all systems have the same x.
+  void add(const char* figure, double x, const std::string& scene, std::vector<SystemSpec> systems, const Load& load) {
+    add_contest(figure, fmt::format("{}", x), scene, at(x, std::move(systems)), load);
   }
 
   void add_contest(const char* figure, const std::string& name, const std::string& scene,
-                   std::vector<SystemSpec> systems, double objects_per_step) {
+                   std::vector<SystemSpec> systems, const Load& load) {
     const double budget = quick_ ? 1e5 : 1e6;  // objects touched in all steps together
     const int rounds = quick_ ? 3 : 7;
-    const double steps = budget / rounds / std::max(objects_per_step, 1.0);
+    const double steps = budget / rounds / std::max(load.touched, 1.0);
     ContestPlan plan{scene, std::move(systems), rounds, std::clamp(static_cast<int>(steps), 2, quick_ ? 20 : 60)};
-    const double touched = (rounds + 1) * plan.steps_per_round * objects_per_step;
-    const double cost = 0.02 + 1e-6 * touched * static_cast<double>(plan.systems.size());
+    double cost = 0.01 + 5e-9 * std::pow(load.objects, 5.0 / 3);  // the oracle's
+    for (const SystemSpec& spec : plan.systems) {
+      cost += expected_seconds(spec, load, (rounds + 1) * plan.steps_per_round);
+    }
     points_.push_back({figure, name, std::move(plan), cost});
   }
 
@@ -119,7 +134,7 @@ void plan_2(Plans& plans) {
        plans.either({1000, 2000, 4000, 8000, 16000, 32000, 64000, 128000}, {1000, 2000, 4000, 8000, 16000, 32000})) {
     const double cost_factor = n <= limit ? std::max(1.0, std::cbrt(n / 1000)) : 1;
     plans.add(figure::k2, n, paper_scene(n, 1, 0), joined(cells_for(n, classic_limit, limit), grid_systems()),
-              n * cost_factor);
+              {n, n * cost_factor});
   }
 }
 
@@ -128,7 +143,7 @@ void plan_8(Plans& plans) {
       plans.either({0, 30, 75, 150, 300, 450, 600, 900, 1200, 1500, 2000, 2500, 3000}, {30, 150, 300, 600, 1500, 3000});
   for (const double count : moving) {
     plans.add(figure::k8, count, paper_scene(3000, count / 3000, 1.0 / 3000),
-              joined(cell_specs({kClassic, kBatch, kSegmented, kRows}), {presorted_cell()}), 3000);
+              joined(cell_specs({kClassic, kBatch, kSegmented, kRows}), {presorted_cell()}), {3000, 3000});
   }
 }
 
@@ -137,7 +152,7 @@ void plan_9(Plans& plans) {
                                    {2, 20, 40, 80, 120, 200, 400});
   for (const double count : events) {
     plans.add(figure::k9, count, paper_scene(3000, 0.05, count / 2 / 3000),
-              joined(cell_specs({kClassic, kBatch, kSegmented, kRows}), {presorted_cell(), auto_cell()}), 3000);
+              joined(cell_specs({kClassic, kBatch, kSegmented, kRows}), {presorted_cell(), auto_cell()}), {3000, 3000});
   }
 }
 
@@ -146,7 +161,7 @@ void plan_10(Plans& plans) {
       plans.either({0, 200, 500, 1000, 1500, 2000, 3000, 4000, 5000, 6000, 8000, 12000}, {0, 1000, 4000, 8000});
   for (const double count : events) {
     plans.add(figure::k10, count, paper_scene(1e5, 0.1, count / 2 / 1e5), joined(grid_systems(), {auto_grid()}),
-              1e4 + count);
+              {1e5, 1e4 + count});
   }
 }
 
@@ -155,7 +170,7 @@ void plan_11(Plans& plans) {
   const double limit = plans.quick() ? 10000 : 200000;
   for (const double n : plans.either({10000, 20000, 50000, 100000, 150000, 200000}, {10000, 50000, 200000})) {
     plans.add(figure::k11, n, paper_scene(n, 0.1, 0.005), joined(cells_for(n, classic_limit, limit), grid_systems()),
-              0.11 * n);
+              {n, 0.11 * n});
   }
 }
 
@@ -172,7 +187,7 @@ void plan_population(Plans& plans) {
       spec.x = std::round(std::min(spec.population, n));
     }
   }
-  plans.add_contest(figure::kPopulation, "all", paper_scene(n, 0.1, 0.005), systems, 0.11 * n);
+  plans.add_contest(figure::kPopulation, "all", paper_scene(n, 0.1, 0.005), systems, {n, 0.11 * n});
 }
 
 void plan_segments(Plans& plans) {
@@ -188,8 +203,9 @@ void plan_segments(Plans& plans) {
     return systems;
   };
   plans.add_contest(figure::kSegments, "events", paper_scene(3000, 0, 10.0 / 3000), specs(system_name::kSegmentsEvents),
-                    1000);
-  plans.add_contest(figure::kSegments, "sort", paper_scene(3000, 0.2, 0), specs(system_name::kSegmentsSort), 1000);
+                    {3000, 1000});
+  plans.add_contest(figure::kSegments, "sort", paper_scene(3000, 0.2, 0), specs(system_name::kSegmentsSort),
+                    {3000, 1000});
 }
 
 // A drain of few updates is sorted locally, so that many updates are, too, when they come in several drains.
@@ -204,10 +220,11 @@ void plan_sorts(Plans& plans) {
     plans.add(figure::kSorts, n, paper_scene(n, 1, 0),
               {spec(system_name::kBatchGlobal, kBatch, 1), spec(system_name::kBatchLocal, kBatch, 4),
                spec(system_name::kSegmentedGlobal, kSegmented, 1), spec(system_name::kSegmentedLocal, kSegmented, 5)},
-              n);
+              {n, n});
     plans.add_contest(
         figure::kSorts, fmt::format("{} few", n), paper_scene(n, 0.05, 0),
-        at(n, {spec(system_name::kFewMovingGlobal, kClassic, 1), spec(system_name::kFewMovingLocal, kBatch, 1)}), n);
+        at(n, {spec(system_name::kFewMovingGlobal, kClassic, 1), spec(system_name::kFewMovingLocal, kBatch, 1)}),
+        {n, n});
   }
 }
 
@@ -215,11 +232,11 @@ void plan_coherence(Plans& plans) {
   const double n = plans.quick() ? 10000 : 50000;
   const std::vector<SystemSpec> systems = joined(grid_specs({kBatch, kSegmented}), {engine_spec(), octree_spec()});
   for (const double share : plans.either({0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1}, {0.01, 0.1, 1})) {
-    plans.add(figure::kCoherence, share, paper_scene(n, share, 0), systems, share * n);
+    plans.add(figure::kCoherence, share, paper_scene(n, share, 0), systems, {n, share * n});
   }
   for (const double speed : plans.either({0.01, 0.03, 0.1, 0.3, 1, 3}, {0.01, 0.1, 1})) {
     plans.add(figure::kSpeed, speed, fmt::format("uniform:n={},moving=1,churn=0,density=0.05,speed={}", n, speed),
-              systems, n);
+              systems, {n, n});
   }
 }
 
@@ -229,32 +246,33 @@ void plan_clumped(Plans& plans) {
     plans.add(
         figure::kClumped, share,
         fmt::format("clusters:n={},moving={},churn=0.005,density=0.05,speed=0.1,clusters=16,spread=0.1", n, share),
-        grid_specs({kBatch, kSegmented}), share * n);
+        grid_specs({kBatch, kSegmented}), {n, share * n});
     // The same without clumps, for the ratio.
     std::vector<SystemSpec> uniform = grid_specs({kBatch, kSegmented});
     for (SystemSpec& spec : uniform) spec.name += system_name::kUniformSuffix;
     plans.add_contest(figure::kClumped, fmt::format("{} uniform", share), paper_scene(n, share, 0.005),
-                      at(share, std::move(uniform)), share * n);
+                      at(share, std::move(uniform)), {n, share * n});
   }
 }
 
 void plan_replaced(Plans& plans) {
   for (const double share : plans.either({0.01, 0.03, 0.1, 0.3, 0.6, 1}, {0.01, 1})) {
-    plans.add(figure::kReplaced, share, paper_scene(3000, 0.1, share), cell_specs({kBatch, kPlane}), 3000);
+    plans.add(figure::kReplaced, share, paper_scene(3000, 0.1, share), cell_specs({kBatch, kPlane}), {3000, 3000});
   }
 }
 
 // Exact counts; their times are of no interest.
 void plan_work(Plans& plans) {
   for (const double n : plans.either({1000, 2000, 4000, 8000, 16000, 32000}, {1000, 2000, 4000})) {
-    plans.add(figure::kFlat, n, paper_scene(n, 1, 0) + ",dim=2", cell_specs({kClassic}), 3 * n);
+    plans.add(figure::kFlat, n, paper_scene(n, 1, 0) + ",dim=2", cell_specs({kClassic}), {n, 3 * n});
   }
   for (const double n :
        plans.either({1000, 2000, 4000, 8000, 16000, 32000, 64000}, {1000, 2000, 4000, 8000, 16000, 32000})) {
     plans.add(figure::kInsertWork, n, paper_scene(n, 0, 10 / n),
-              joined(cells_for(n, plans.quick() ? 8000 : 32000, n), grid_specs({kClassic, kSegmented})), n);
+              joined(cells_for(n, plans.quick() ? 8000 : 32000, n), grid_specs({kClassic, kSegmented})), {n, n});
   }
-  plans.add(figure::kQuiet, 10000, paper_scene(10000, 0, 0), grid_specs({kClassic, kBatch, kSegmented}), 10000);
+  plans.add(figure::kQuiet, 10000, paper_scene(10000, 0, 0), grid_specs({kClassic, kBatch, kSegmented}),
+            {10000, 10000});
 }
 
 }  // namespace
