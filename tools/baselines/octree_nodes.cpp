@@ -221,7 +221,8 @@ void OctreeNodes<Scalar>::validate() const {
   };
   std::size_t expected = 0;
   for (ObjectId object = 0; object < placements_.size(); ++object) {
-    const auto& [box, home] = placements_[object];
+    const BoxType& box = placements_[object].box;
+    const NodeId home = placements_[object].home;
     if (home == kNone) continue;
     const std::string name = "object " + std::to_string(object);
     NodeId from = home;
