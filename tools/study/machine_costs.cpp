@@ -135,20 +135,22 @@ Spread measure_barrier(const std::shared_ptr<Executor>& executor) {
   return low_ones(std::move(samples));
 }
 
-// The pause from which on workers sleep, and what waking takes.
+// The pause from which on workers sleep, and what waking takes. Pauses of which no sample came through are left out.
 void measure_wake(Executor& executor, MachineCosts& costs) {
   constexpr double kPauses[] = {0, 2e-6, 5e-6, 10e-6, 20e-6, 50e-6, 100e-6, 200e-6, 500e-6, 1e-3, 2e-3};
-  std::vector<Spread> starts;
-  for (const double pause : kPauses) starts.push_back(measure_start(executor, pause));
-  if (std::any_of(starts.begin(), starts.end(), [](const Spread& start) { return start.median <= 0; })) return;
-  costs.steal = starts.front();
-  const Spread& last = starts.back();
-  costs.wake = {std::max(0.0, last.median - costs.steal.median), std::max(0.0, last.low - costs.steal.median),
-                std::max(0.0, last.high - costs.steal.median)};
-  std::size_t first_asleep = std::size(kPauses) - 1;
-  while (first_asleep > 1 && starts[first_asleep - 1].median > (costs.steal.median + last.median) / 2) --first_asleep;
-  costs.spin = {(kPauses[first_asleep - 1] + kPauses[first_asleep]) / 2, kPauses[first_asleep - 1],
-                kPauses[first_asleep]};
+  std::vector<std::pair<double, Spread>> starts;
+  for (const double pause : kPauses) {
+    const Spread start = measure_start(executor, pause);
+    if (start.median > 0) starts.emplace_back(pause, start);
+  }
+  if (starts.size() < 3) return;
+  costs.steal = starts.front().second;
+  const double steal = costs.steal.median;
+  const Spread& last = starts.back().second;
+  costs.wake = {std::max(0.0, last.median - steal), std::max(0.0, last.low - steal), std::max(0.0, last.high - steal)};
+  std::size_t asleep = starts.size() - 1;
+  while (asleep > 1 && starts[asleep - 1].second.median > (steal + last.median) / 2) --asleep;
+  costs.spin = {(starts[asleep - 1].first + starts[asleep].first) / 2, starts[asleep - 1].first, starts[asleep].first};
 }
 
 /// A short piece of work of one worker, by wall and by processor time.
