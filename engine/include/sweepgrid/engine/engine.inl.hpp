@@ -209,15 +209,22 @@ Stats SWEEPGRID_ENGINE::stats() const {
 }
 
 SWEEPGRID_ENGINE_TEMPLATE
-void SWEEPGRID_ENGINE::record_tasks(bool on) { core_.graph().record(on); }
+void SWEEPGRID_ENGINE::record_tasks(bool on) {
+  core_.graph().record(on);
+  if (filter_) filter_->record(on);
+}
 
 SWEEPGRID_ENGINE_TEMPLATE
-const TaskTrace& SWEEPGRID_ENGINE::tasks() const { return core_.graph().trace(); }
+const TaskTrace& SWEEPGRID_ENGINE::tasks() const { return filter_ ? filter_->trace() : core_.graph().trace(); }
 
 SWEEPGRID_ENGINE_TEMPLATE
 std::vector<std::string> SWEEPGRID_ENGINE::stage_names() const {
   std::vector<std::string> names;
-  for (StageGraph::StageId stage = 0; stage < core_.graph().size(); ++stage) names.push_back(core_.graph().name(stage));
+  const auto add = [&](const StageGraph& graph) {
+    for (StageGraph::StageId stage = 0; stage < graph.size(); ++stage) names.push_back(graph.name(stage));
+  };
+  add(core_.graph());
+  if (filter_) add(filter_->graph());
   return names;
 }
 

@@ -46,6 +46,10 @@ class EnvelopeFilter {
 
   /// To be told the numbers of events of every step, once they are free of doubles.
   void count_events(std::size_t begins, std::size_t ends);
+  /// Whether trace() is kept: the tasks of the core's graph and of this one, whose stages come after, in the latest
+  /// step.
+  void record(bool on) { graph_->record(on); }
+  [[nodiscard]] const TaskTrace& trace() const { return trace_; }
   /// Puts what clients see in place of what the core saw: events, pairs, the stages of this graph too.
   void add_stats(Stats& stats) const;
 
@@ -67,6 +71,7 @@ class EnvelopeFilter {
   void plan_settle(std::vector<std::uint64_t>& costs);
   void settle(std::size_t task);
   void count_candidates();
+  void join_traces();
 
   [[nodiscard]] std::size_t new_lists() const { return query_ ? core_.lists() : 0; }
   [[nodiscard]] std::span<const std::uint32_t> granules(std::size_t block) const {
@@ -93,6 +98,7 @@ class EnvelopeFilter {
   std::uint64_t total_begins_ = 0;
   std::uint64_t total_ends_ = 0;
   bool ran_ = false;
+  TaskTrace trace_;
   bool query_ = false;
   std::size_t blocks_ = 0;  // of granules; the first tasks
   std::vector<Task> tasks_;

@@ -35,7 +35,23 @@ bool EnvelopeFilter<Scalar, Dim>::step(bool query) {
   } else if (query) {
     core_.count_events(0, 0);
   }
+  join_traces();
   return any;
+}
+
+// One after the other, as they ran.
+template <class Scalar, int Dim>
+void EnvelopeFilter<Scalar, Dim>::join_traces() {
+  trace_.clear();
+  if (query_) trace_ = core_.graph().trace();
+  std::int64_t end = 0;
+  for (const TaskRecord& task : trace_) end = std::max(end, task.start_ns + task.duration_ns);
+  if (!ran_) return;
+  for (TaskRecord task : graph_->trace()) {
+    task.stage += static_cast<std::uint32_t>(core_.graph().size());
+    task.start_ns += end;
+    trace_.push_back(task);
+  }
 }
 
 template <class Scalar, int Dim>
