@@ -95,7 +95,7 @@ void add_batch(std::vector<Claim>& claims, const Results& results) {
             .why_more = "Endpoints are swapped into place."},
            swaps_at_last(results, kBatchCell)));
   claims.push_back(with({.where = "3.2.1",
-                         .says = "... so for few events the time is at most linear in n",
+                         .says = "Batch: the time of few events is at most linear in n",
                          .what = "exponent of time over n, 20 events",
                          .band = {.high = 1.1},
                          .why_more = "What is touched outgrows the caches; the counts above do not grow."},
@@ -110,7 +110,7 @@ void add_batch(std::vector<Claim>& claims, const Results& results) {
            results.times_faster(figure::k9, 2, kClassicCell, kBatchCell)));
   claims.push_back(
       with({.where = "3.2.1",
-            .says = "... and smoothly becomes the sweeping plane when many events occur",
+            .says = "Batch smoothly becomes the sweeping plane when many events occur",
             .what = "batch / plane, all of 3000 objects replaced in each step",
             .band = {0.67, 1.5},
             .why_less = "The plane sorts all endpoints by comparing, batch only looks for those that changed.",
@@ -148,14 +148,14 @@ void add_segmented(std::vector<Claim>& claims, const Results& results) {
                          .why_more = "Swaps leave their segments."},
                         swaps_at_last(results, kSegmentedCell)));
   claims.push_back(with({.where = "3.2.2",
-                         .says = "... O(k m log n) in all",
+                         .says = "Segmented lists: O(k m log n) in all",
                          .what = "exponent of box tests per event over n, exact counts",
                          .band = {-0.1, 0.2},
                          .why_less = "Tests fall with n.",
                          .why_more = tests_text + " In a grid n is the cell's, and it is a constant (below)."},
                         tests));
   claims.push_back(with({.where = "3.2.2",
-                         .says = "... so for few events the time hardly grows with n",
+                         .says = "Segmented lists: the time of few events hardly grows with n",
                          .what = "exponent of time over n, 20 events",
                          .band = {-0.1, 0.35},
                          .why_less = "Time falls with n.",
@@ -171,7 +171,7 @@ void add_segmented(std::vector<Claim>& claims, const Results& results) {
            results.law(figure::kInsertWork, kClassicGrid, swaps_per_event, kLeastGrid)));
   claims.push_back(
       with({.where = "3.1, 3.2.2",
-            .says = "... also what segmented lists test",
+            .says = "In a grid the tests of segmented lists do not grow with n either",
             .what = "exponent of box tests per event over n from 8000 on, segmented cells in a grid, exact counts",
             .band = {-0.2, 0.2},
             .why_less = "Larger scenes have fewer objects per cell.",
@@ -234,7 +234,7 @@ void add_events(std::vector<Claim>& claims, const Results& results) {
     quiet = static_cast<double>(work.cells.swaps + work.cells.box_tests + work.cells.deltas + work.cells_drained);
   }
   claims.push_back(with({.where = "3.3",
-                         .says = "... so objects at rest cost nothing, however many pairs they make",
+                         .says = "Objects at rest cost nothing, however many pairs they make",
                          .what = "swaps, box tests, deltas and cells drained while nothing moves, exact count",
                          .band = {0, 0},
                          .why_more = "Cells without updates are drained.",

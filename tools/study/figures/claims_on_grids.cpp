@@ -87,12 +87,12 @@ void add_octree(std::vector<Claim>& claims, const Results& results) {
   };
   octree_slower(figure::k11, 200000, "The octree is generally slower than a grid of sweep and prune",
                 "octree / segmented in a grid, Figure 11, 200 000 objects");
-  octree_slower(figure::kCoherence, 0.01, "... above all when most objects rest",
+  octree_slower(figure::kCoherence, 0.01, "The octree is slower above all when most objects rest",
                 "octree / segmented in a grid, 1 % moving");
-  octree_slower(figure::kSpeed, 0.01, "... or when they are slow",
+  octree_slower(figure::kSpeed, 0.01, "The octree is slower when objects are slow",
                 "octree / segmented in a grid, all moving, 0.01 widths per step");
   claims.push_back(with({.where = "4.2",
-                         .says = "... and faster only where coherence is low",
+                         .says = "The octree is faster where coherence is low",
                          .what = "segmented in a grid / octree, all moving, a width per step",
                          .band = {.low = 1},
                          .why_less = "Even then the grid is faster."},
@@ -114,7 +114,7 @@ void add_figure_11(std::vector<Claim>& claims, const Results& results) {
   };
   const Part parts[] = {
       {10000, "10 % moving, 0.5 % inserted and erased: segmented is slightly faster at small scales", {1, 1.4}},
-      {200000, "... almost twice as fast at 200 000 objects", {1.6, 2.2}}};
+      {200000, "The same: almost twice as fast at 200 000 objects", {1.6, 2.2}}};
   for (const Part& part : parts) {
     const std::string why = sorts_text(results, figure::k11, part.objects) + overtaken_text;
     claims.push_back(with({.where = "4.2, Figure 11",
@@ -143,7 +143,7 @@ void add_clumped(std::vector<Claim>& claims, const Results& results) {
                          .why_less = "Crowded cells have more moving objects at a time as well, which favours batch."},
                         quotient(median(clumped), median(uniform))));
   claims.push_back(with({.where = "4.2",
-                         .says = "... and when fewer objects move",
+                         .says = "The advantage widens when fewer objects move",
                          .what = "batch / segmented with 1 % moving, over the same with 10 %",
                          .band = {.low = 1},
                          .why_less = "With as many inserts and erases, fewer movers leave batch less to do as well."},

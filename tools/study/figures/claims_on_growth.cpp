@@ -59,7 +59,7 @@ void add_growth(std::vector<Claim>& claims, const Results& results) {
                          .why_more = "The scene is denser on its axes than the estimate assumes."},
                         swaps));
   claims.push_back(with({.where = "2.1",
-                         .says = "... and in 2 dimensions with the power 3/2",
+                         .says = "Swaps grow as u k n^(1-1/k): in 2 dimensions, all moving, with the power 3/2",
                          .what = "exponent of swaps, exact counts",
                          .band = {1.45, 1.55},
                          .why_less = "Small scenes have relatively more objects that turn back at the walls.",

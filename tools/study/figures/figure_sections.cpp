@@ -32,19 +32,19 @@ const ChartPlan kCharts[] = {
      "Figure 8: one cell, one insert and one erase in each step",
      "3000 objects, of which more and more move.",
      {"moving objects", "", false},
-     false},
+     true},
     {figure::k9,
      "figure-9",
      "Figure 9: one cell, more and more inserts and erases",
      "3000 objects, of which 150 move. As many are inserted as are erased.",
-     {"inserts and erases per step", "", false},
-     false},
+     {"inserts and erases per step", "", true},
+     true},
     {figure::k10,
      "figure-10",
      "Figure 10: grid, more and more inserts and erases",
      "100 000 objects, of which 10 000 move, in cells of about 300.",
      {"inserts and erases per step", "", false},
-     false},
+     true},
     {figure::k11,
      "figure-11",
      "Figure 11: everything grows",
@@ -212,7 +212,7 @@ std::vector<Section> figure_sections(const Results& results) {
     if (scene.empty()) continue;
     Section& section = sections.emplace_back();
     section.title = plan.title;
-    section.text = fmt::format("The first of its scenes: {}", scene);
+    section.text = fmt::format("The first of its scenes: `{}`", scene);
     section.charts.push_back(time_chart(plan, results));
     if (plan.figure == figure::k2) add_growth(section, results);
     add_counts(section, plan.figure, results);
