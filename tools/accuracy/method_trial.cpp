@@ -49,6 +49,7 @@ ScriptStep take_bad(ScriptStep& step) {
 
 std::vector<SceneBox> widened(const std::vector<FloatBox>& boxes) {
   std::vector<SceneBox> result;
+  result.reserve(boxes.size());
   for (const FloatBox& box : boxes) {
     result.emplace_back(SceneBox::Point{box.min[0], box.min[1], box.min[2]},
                         SceneBox::Point{box.max[0], box.max[1], box.max[2]});

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <unordered_map>
-#include <utility>
 
 #include "accuracy/exact_tests.hpp"
 #include "accuracy/extent_sweep.hpp"
@@ -75,7 +74,7 @@ class SweepTruth : public Truth {
     const std::size_t place = found->second;
     places_.erase(found);
     if (place + 1 != objects_.size()) {
-      objects_[place] = std::move(objects_.back());
+      objects_[place] = objects_.back();
       places_[objects_[place].key] = place;
     }
     objects_.pop_back();

@@ -18,7 +18,6 @@ namespace {
 
 using accuracy::Method;
 using accuracy::Regime;
-using accuracy::Trial;
 using accuracy::Verdict;
 
 constexpr const char* kCalm = "calm";
