@@ -18,6 +18,7 @@ MeasuredThreads measured_of(const Json& json, std::uint64_t checksum) {
   json.at("part_s").get_to(result.part_seconds);
   json.at("busy_s").get_to(result.busy);
   json.at("predicted").get_to(result.predicted);
+  json.at("replayed").get_to(result.replayed);
   for (const std::uint64_t found : json.at("checksums").get<std::vector<std::uint64_t>>()) {
     result.same_events = result.same_events && found == checksum;
   }

@@ -21,11 +21,15 @@ struct MeasuredThreads {
   std::vector<double> part_seconds;       ///< queueing, stages, the rest of step()
   std::vector<std::vector<double>> busy;  ///< by stage and worker
   bool same_events = true;                ///< in all rounds, as in the run that was checked
-  Prediction predicted;                   ///< cut for as many workers
+  Prediction predicted;                   ///< cut for as many workers, recorded on one thread
+  Prediction replayed;                    ///< the tasks with the times that they took on these threads
 
   /// On this machine's memory.
   [[nodiscard]] double predicted_seconds() const { return predicted.seconds("stealing_roof"); }
   [[nodiscard]] double error() const { return predicted_seconds() / seconds - 1; }
+  [[nodiscard]] double replay_error() const { return replayed.seconds("stealing") / seconds - 1; }
+  /// How many times as long the tasks take on these threads as on one.
+  [[nodiscard]] double task_slowdown() const { return replayed.work / predicted.work; }
   /// Mean over most of the workers' times in tasks, weighted by stage: 1 when all have as much to do in each.
   [[nodiscard]] double balance() const;
 };

@@ -194,24 +194,29 @@ Json ScalingBench::memory_shares(const std::string& name) {
 Json ScalingBench::measured(const std::string& name) {
   const ScalingScene& played = scene(name);
   std::map<int, std::vector<ScalingRun>> runs;
-  std::map<int, std::vector<WorkGraph>> work;
+  std::map<int, std::vector<WorkGraph>> work;    // by one thread that passes for so many
+  std::map<int, std::vector<WorkGraph>> as_ran;  // by as many threads
+  std::map<int, ScalingRun> traced;
+  const auto keep = [](std::vector<WorkGraph>& least, std::vector<WorkGraph> recorded) {
+    if (least.empty()) {
+      least = std::move(recorded);
+    } else {
+      keep_least(least, recorded);
+    }
+  };
   for (int round = 0; round < plan_.rounds; ++round) {
     for (const int threads : plan_.threads) {
       runs[threads].push_back(run_scaling(played, {}, make_executor(threads), nullptr));
-      std::vector<WorkGraph> recorded = record_work(played, {}, threads, 1);
-      if (round == 0) {
-        work[threads] = std::move(recorded);
-      } else {
-        keep_least(work[threads], recorded);
-      }
+      keep(work[threads], record_work(played, {}, threads, 1));
+      const auto recorder = std::make_shared<RecordingExecutor>(make_executor(threads));
+      traced[threads] = run_scaling(played, {}, recorder, recorder.get());
+      keep(as_ran[threads], traced[threads].work);
     }
   }
   Json by_threads = Json::array();
   for (const int threads : plan_.threads) {
-    const auto recorder = std::make_shared<RecordingExecutor>(make_executor(threads));
-    const ScalingRun traced = run_scaling(played, {}, recorder, recorder.get());
     std::vector<double> round_seconds;
-    std::vector<std::uint64_t> checksums = {traced.checksum};
+    std::vector<std::uint64_t> checksums = {traced[threads].checksum};
     for (const ScalingRun& run : runs[threads]) {
       double seconds = 0;
       for (const ScalingTimes& step : run.steps) seconds += step.queueing + step.step;
@@ -223,9 +228,10 @@ Json ScalingBench::measured(const std::string& name) {
                           {"step_s", least_step_seconds(runs[threads])},
                           {"part_s", parts},
                           {"round_s", round_seconds},
-                          {"busy_s", traced.busy},
+                          {"busy_s", traced[threads].busy},
                           {"checksums", checksums},
-                          {"predicted", predict(work[threads], threads, costs(), shares(name))}});
+                          {"predicted", predict(work[threads], threads, costs(), shares(name))},
+                          {"replayed", predict(as_ran[threads], threads, costs(), {})}});
   }
   const ScalingRun& first = runs.begin()->second.front();
   return {{"stages", first.stages},
