@@ -34,33 +34,56 @@ struct Condition {
   }
 };
 
-/// When a condition that holds at one instant only changes: where `above` stands to `above` + `below` as t stands to 1.
-/// Both are differences of two endpoints, kept as such: exactly a - b.
-struct Root {
-  struct Difference {
-    double a, b;
+/// a - b, kept as such.
+struct Difference {
+  double a, b;
 
-    [[nodiscard]] double rounded() const { return a - b; }
-    [[nodiscard]] Rational exact() const { return Rational(a) - Rational(b); }
-  };
-  Difference above, below;  // >= 0, not both 0
+  [[nodiscard]] double rounded() const { return a - b; }
+  [[nodiscard]] Rational exact() const { return Rational(a) - Rational(b); }
+
+  /// Whether rounded() is a - b: the error of a difference is a double, and found by the differences the other way.
+  [[nodiscard]] bool is_exact() const {
+    const double difference = a - b;
+    const double minus_b = difference - a;
+    return (a - (difference - minus_b)) - (b + minus_b) == 0;
+  }
 };
 
-// Whether a <= b. Every rounded operation is on numbers of one sign, so relative errors add up to less than 8 * 2^-53.
+/// When a condition that holds at one instant only changes: where `above` stands to `above` + `below` as t stands to 1.
+/// Both are at least 0, and not both 0.
+struct Root {
+  Difference above, below;
+
+  [[nodiscard]] bool is_exact() const { return above.is_exact() && below.is_exact(); }
+};
+
+// Whether x * y, which is `product` when rounded, has lost nothing but digits behind its last.
+bool in_range(double x, double y, double product) {
+  constexpr double kLeast = 1e-250;
+  return product == 0 ? x == 0 || y == 0 : product > kLeast && product < kInfinity;
+}
+
+// Whether a <= b, that is a.above / (a.above + a.below) <= b.above / (b.above + b.below): cross-multiplied, all but two
+// products cancel out.
 bool not_after(const Root& a, const Root& b) {
   const double a_above = a.above.rounded();
+  const double a_below = a.below.rounded();
   const double b_above = b.above.rounded();
-  const double left = a_above * (b_above + b.below.rounded());
-  const double right = b_above * (a_above + a.below.rounded());
-  constexpr double kBound = 1 + 0x1p-49;
-  constexpr double kLeast = 1e-290;  // below, products may have lost digits
-  if (left < kInfinity && right < kInfinity && std::max(left, right) > kLeast) {
+  const double b_below = b.below.rounded();
+  const double left = a_above * b_below;
+  const double right = b_above * a_below;
+  if (in_range(a_above, b_below, left) && in_range(b_above, a_below, right)) {
+    // Three roundings on either side.
+    constexpr double kBound = 1 + 0x1p-49;
     if (left * kBound < right) return true;
     if (right * kBound < left) return false;
+    if (a.is_exact() && b.is_exact()) {
+      // Rounding keeps order, and what two equal products have lost is a double.
+      if (left != right) return left < right;
+      return std::fma(a_above, b_below, -left) <= std::fma(b_above, a_below, -right);
+    }
   }
-  const Rational a_exact = a.above.exact();
-  const Rational b_exact = b.above.exact();
-  return a_exact * (b_exact + b.below.exact()) <= b_exact * (a_exact + a.below.exact());
+  return a.above.exact() * b.below.exact() <= b.above.exact() * a.below.exact();
 }
 
 // Of two roots the later one, or the earlier one.
