@@ -88,10 +88,18 @@ void EnvelopeFilter<Scalar, Dim>::filter(std::size_t index) {
 
 template <class Scalar, int Dim>
 void EnvelopeFilter<Scalar, Dim>::filter_object(ObjectId object, Task& out) const {
+  using Ordered = OrderedBox<Scalar, Dim>;
+  const bool existed = envelopes_.existed(object);
+  const bool exists = envelopes_.exists(object);
+  const Ordered before(envelopes_.before(object));
+  const Ordered after(envelopes_.box(object));
   for (const ObjectId other : lists_.of(object)) {
-    if (other < object && envelopes_.changed(other)) continue;  // tested there
-    const bool was = did_overlap(object, other);
-    const bool is = do_overlap(object, other);
+    const bool changed = envelopes_.changed(other);
+    if (changed && other < object) continue;  // tested there
+    const Ordered now(envelopes_.box(other));
+    const bool is = exists && envelopes_.exists(other) && after.overlaps(now);
+    const bool was =
+        existed && envelopes_.existed(other) && before.overlaps(changed ? Ordered(envelopes_.before(other)) : now);
     if (was != is) (is ? out.begins : out.ends).emplace_back(object, other);
   }
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstring>
 #include <stdexcept>
 #include <string>
 
@@ -89,7 +90,7 @@ void Envelopes<Scalar, Dim>::replace(ObjectId object, const BoxType& box, double
     state |= kMoved;
     return mark(object);
   }
-  const bool rests = holds(record.box, box) && holds(box, record.box);
+  const bool rests = std::memcmp(&record.box, &box, sizeof(box)) == 0;
   if (rests && (state & kAhead) == 0) return;  // a resting object that its client reports anyway costs nothing more
   if (options_.exact && (state & kChanged) == 0) others_[object] = record.box;
   if (options_.swept) {
