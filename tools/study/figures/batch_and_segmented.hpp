@@ -26,6 +26,8 @@ struct Worst {
   double x = 0;
   double ratio = 0;              ///< to the better one's time
   bool batch_is_better = false;  ///< than segmented lists, there
+  double beside_plain = 0;       ///< to the time of segmented lists without presorting, there
+  std::string work;              ///< what it and batch do in a step there, by exact counts
 };
 
 [[nodiscard]] std::optional<Worst> presorted_at_worst(const Results& results, const std::string& figure,

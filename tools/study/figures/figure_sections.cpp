@@ -129,9 +129,10 @@ std::string law_name(const std::string& system, const PowerLaw& law) {
   return fmt::format("{}: n^{:.2f} ({:.2f} to {:.2f})", system, law.exponent, law.exponent_low, law.exponent_high);
 }
 
+// Of a law of seconds, in milliseconds as time_point().
 Series law_series(const std::string& system, const PowerLaw& law, const std::vector<const Entry*>& entries) {
   Series series{law_name(system, law), SeriesStyle::kFitted, {}, system};
-  for (const Entry* entry : entries) series.points.push_back({entry->x, law(entry->x)});
+  for (const Entry* entry : entries) series.points.push_back({entry->x, 1e3 * law(entry->x)});
   return series;
 }
 
