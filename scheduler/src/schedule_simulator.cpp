@@ -127,6 +127,7 @@ void Simulation::order_tasks(Stage& stage, const std::vector<WorkTask>& tasks) c
   const auto sized = [](const WorkTask& task) { return task.size > 0; };
   if (policy_ != SchedulePolicy::kWorkStealing || std::none_of(tasks.begin(), tasks.end(), sized)) return;
   std::vector<std::uint64_t> sizes;
+  sizes.reserve(tasks.size());
   for (const WorkTask& task : tasks) sizes.push_back(task.size);
   TaskOrder order;
   order.assign_for_stealing(sizes);
@@ -202,6 +203,7 @@ void Simulation::open_stage(std::uint32_t worker, std::uint32_t stage) {
     }
     case SchedulePolicy::kLongestFirst: {
       std::vector<std::pair<std::uint32_t, std::uint32_t>> added;
+      added.reserve(count);
       for (const std::uint32_t task : stages_[stage].order) added.emplace_back(stage, task);
       const auto longer = [&](const auto& a, const auto& b) {
         return graph_[a.first].tasks[a.second].seconds > graph_[b.first].tasks[b.second].seconds;

@@ -154,6 +154,8 @@ class EngineRun {
   void do_step(const ScalingStep& step, bool start) {
     std::vector<Handle> erased;
     std::vector<Handle> updated;
+    erased.reserve(step.erased.size());
+    updated.reserve(step.updated.size());
     for (const std::uint32_t object : step.erased) erased.push_back(handles_[object]);
     for (const std::uint32_t object : step.updated) updated.push_back(handles_[object]);
     const std::vector<BoxType> inserted_boxes = boxes_of<Dim>(step.inserted_boxes);
@@ -232,6 +234,7 @@ ScalingRun run_with(const ScalingScene& scene, const ScalingSettings& settings,
 void apply_events(std::vector<ScenePair>& pairs, const Events<std::uint32_t>& events) {
   const auto wide = [](const std::vector<Pair<std::uint32_t>>& list) {
     std::vector<ScenePair> result;
+    result.reserve(list.size());
     for (const auto& [a, b] : list) result.emplace_back(a, b);
     return result;
   };

@@ -178,6 +178,7 @@ void write_trace(const std::string& path, const ScalingPlan& plan, ScalingBench&
   const std::string& scene = plan.scenes.front();
   const auto lanes = [](int workers) {
     std::vector<std::string> names;
+    names.reserve(static_cast<std::size_t>(workers));
     for (int w = 0; w < workers; ++w) names.push_back(fmt::format("worker {}", w));
     return names;
   };

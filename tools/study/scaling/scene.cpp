@@ -18,6 +18,7 @@ class Numbering {
  public:
   std::vector<std::uint32_t> numbers(const std::vector<SceneKey>& keys) {
     std::vector<std::uint32_t> result;
+    result.reserve(keys.size());
     for (const SceneKey key : keys) {
       result.push_back(numbers_.try_emplace(key, static_cast<std::uint32_t>(numbers_.size())).first->second);
     }
@@ -31,6 +32,7 @@ class Numbering {
 
 std::vector<Box<float, 3>> rounded(const std::vector<SceneBox>& boxes) {
   std::vector<Box<float, 3>> result;
+  result.reserve(boxes.size());
   for (const SceneBox& box : boxes) result.push_back(round_box<float, 3>(box));
   return result;
 }

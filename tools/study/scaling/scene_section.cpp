@@ -254,11 +254,9 @@ Timeline timeline(const SceneFindings& scene, std::size_t index) {
   result.id = id("timeline", index);
   result.title = fmt::format("The last step on {} workers, simulated", found.workers);
   result.caption = "Work stealing. Serial parts are groups of their own.";
+  result.lanes.reserve(found.workers);
   for (std::size_t w = 0; w < found.workers; ++w) result.lanes.push_back(fmt::format("worker {}", w));
-  result.groups = found.stages;
-  for (std::string& stage : result.groups) stage += " tasks";
   // Stages of one name, such as the loops of one bulk call, share a colour.
-  std::vector<std::size_t> group_of;
   std::vector<std::string> groups;
   const auto group = [&](const std::string& name) {
     const auto known = std::find(groups.begin(), groups.end(), name);
