@@ -15,8 +15,8 @@
 #include "engine_setting.hpp"
 #include "figures_file.hpp"
 #include "rounds.hpp"
+#include "scene_script.hpp"
 #include "standard_scenes.hpp"
-#include "system.hpp"
 
 namespace sweepgrid::bench {
 namespace {
@@ -55,7 +55,8 @@ void add_options(CLI::App& app, Options& options) {
   app.add_option("scenes", options.scenes,
                  "Recordings or generators, as `sweepgrid run` takes them; the standard scenes when absent");
   app.add_flag("--large", options.large, "The scenes of up to 1e6 objects as well");
-  app.add_option("--recordings", options.recordings, "The recordings in this folder as well")
+  app.add_option("--recordings", options.recordings,
+                 "The recordings in this folder as well; with the standard scenes, those of the repository when absent")
       ->check(CLI::ExistingDirectory);
   app.add_option("--systems", options.systems, "What runs; ratios are to the first")
       ->delimiter(',')
@@ -78,7 +79,10 @@ void add_options(CLI::App& app, Options& options) {
 std::vector<NamedScene> chosen_scenes(const Options& options) {
   std::vector<NamedScene> scenes;
   for (const std::string& scene : options.scenes) scenes.push_back({scene, scene});
-  if (scenes.empty()) scenes = standard_scenes();
+  if (scenes.empty()) {
+    scenes = standard_scenes();
+    if (options.recordings.empty()) std::ranges::copy(recordings(SWEEPGRID_RECORDINGS), std::back_inserter(scenes));
+  }
   if (options.large) std::ranges::copy(large_scenes(), std::back_inserter(scenes));
   if (!options.recordings.empty()) std::ranges::copy(recordings(options.recordings), std::back_inserter(scenes));
   return scenes;

@@ -1,7 +1,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <functional>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -67,6 +69,42 @@ TEST(EventOrder, IsTheSameForAnyNumberOfShardsAndRanges) {
 TEST(EventOrder, CutsWhereOneKeyIsInMostPairs) {
   // A ground plane: one first key, so that cuts must fall between pairs and not between keys.
   for (const int keys : {1, 2, 3}) expect_same_for_any_shards_and_ranges<std::less<int>>(5000, keys);
+}
+
+/// Keys from `least` on, `spread` of them, in as many pairs that they are sorted digit by digit if they may be.
+template <class Key>
+void expect_sorted_by_value(Key least, std::uint64_t spread) {
+  oracle::Random random(spread);
+  std::vector<Pair<Key>> pairs;
+  for (int i = 0; i < 1000; ++i) {
+    const auto some = [&] {
+      const auto wide = static_cast<std::uint64_t>(random.below(1 << 30)) << 30 | random.below(1 << 30);
+      return static_cast<Key>(static_cast<std::uint64_t>(least) + wide * 16 % spread);
+    };
+    pairs.push_back({some(), some()});
+  }
+  auto expected = pairs;
+  std::sort(expected.begin(), expected.end(),
+            [](const auto& a, const auto& b) { return std::pair(a.first, a.second) < std::pair(b.first, b.second); });
+  expected.erase(std::unique(expected.begin(), expected.end()), expected.end());
+  EventOrder<Key, KeyOrder<Key>> order;
+  order.reset(1);
+  order.shard(0) = pairs;
+  order.sort_shard(0);
+  EXPECT_EQ(order.shard(0), expected);
+}
+
+TEST(EventOrder, IsThatOfTheValuesOfKeys) {
+  expect_sorted_by_value<std::uint32_t>(0, 1);
+  expect_sorted_by_value<std::uint32_t>(5, 2);
+  expect_sorted_by_value<std::uint32_t>(0, std::uint64_t{1} << 32);
+  expect_sorted_by_value<std::int32_t>(-500, 1000);
+  expect_sorted_by_value<std::int32_t>(std::numeric_limits<std::int32_t>::min(), std::uint64_t{1} << 32);
+  expect_sorted_by_value<std::int8_t>(-128, 256);
+  expect_sorted_by_value<std::uint16_t>(60000, 5000);
+  expect_sorted_by_value<std::int64_t>(std::numeric_limits<std::int64_t>::min(), 100000);
+  expect_sorted_by_value<std::int64_t>(-5, std::uint64_t{1} << 27);
+  expect_sorted_by_value<std::uint64_t>(std::uint64_t{1} << 40, std::uint64_t{1} << 62);
 }
 
 TEST(EventOrder, DropsDoublesOfAShard) {

@@ -60,8 +60,9 @@ void begin_step(Grid<Scalar, Dim>& grid, std::size_t blocks, bool dense) {
 
 /// Gathers and drains all that was routed, and drops what is empty.
 template <class Scalar, int Dim>
-CellSums finish_step(Grid<Scalar, Dim>& grid, const ClientBoxes<Scalar, Dim>& boxes) {
+CellSums finish_step(Grid<Scalar, Dim>& grid, const ClientBoxes<Scalar, Dim>& boxes, std::size_t blocks = 1) {
   CellSums sums;
+  for (std::size_t block = 0; block < blocks; ++block) grid.end_block(block);
   for (std::size_t shard = 0; shard < grid.shards(); ++shard) {
     DrainOutput<Scalar, Dim> out;
     grid.gather(shard);

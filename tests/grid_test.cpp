@@ -155,7 +155,7 @@ class GridPlay {
         }
       }
     }
-    const oracle::CellSums sums = oracle::finish_step(grid_, boxes_);
+    const oracle::CellSums sums = oracle::finish_step(grid_, boxes_, blocks);
     for (const ObjectId object : resident_)
       boxes_[object].after ? here_.insert(object).second : here_.erase(object) > 0;
     here_.insert(came.begin(), came.end());
@@ -400,6 +400,7 @@ TEST_P(SmallGrid, AHugeVisitorAsksOnlyCellsThatExist) {
   oracle::begin_step(grid, 1, GetParam());
   boxes_[7].after = Box2({5, -kInfinity}, {kInfinity, kInfinity});
   grid.route_visit(0, 7, nullptr, &*boxes_[7].after, true);
+  grid.end_block(0);
   EXPECT_EQ(grid.calls(0), 2u);
   EXPECT_EQ(oracle::finish_step(grid, boxes_).size(), 2u);
   EXPECT_EQ(grid.cell_count(), 3u);

@@ -4,10 +4,12 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstring>
 #include <memory>
+#include <span>
 #include <stdexcept>
 
 #include <sweepgrid/sap/row_kernels.hpp>
@@ -251,6 +253,48 @@ struct Kernels {
     return ops.size();
   }
 
+  /// The boxes at `first` and the next places as refresh() has them.
+  static HWY_INLINE Box arriving(const Block& block, const Bits* boxes, std::uint32_t first) {
+    Box arriving = Box::load(block, first);
+    const std::uint32_t count = std::min(block.size() - first, kLanes);
+    for (std::uint32_t lane = 0; lane < count; ++lane) {
+      arriving.set(lane, Box::everywhere(boxes + std::size_t{first + lane} * (2 * Dim)));
+    }
+    return arriving;
+  }
+
+  static void refresh(Block& block, const Bits* boxes, std::span<const std::uint32_t> moved,
+                      std::vector<OverlapDelta>& deltas, SapCounters& counters) {
+    Scratch scratch(moved.size());
+    const std::size_t deltas_before = deltas.size();
+    for (std::uint32_t first = 0; first < block.size(); first += kLanes) {
+      const Box old_boxes = Box::load(block, first);
+      const Box new_boxes = arriving(block, boxes, first);
+      Lanes open = lanes_below(first, block.size()) & Box::kAll;
+      std::size_t compared = 0;
+      for (; compared < moved.size() && open != 0; ++compared) {
+        const std::uint32_t place = moved[compared];
+        const std::uint32_t lane = place - first;
+        open &= ~(Lanes{lane < kLanes} << (lane % 32));
+        const Lanes was = old_boxes.overlaps(Box::at(block, place));
+        const Lanes is = new_boxes.overlaps(Box::everywhere(boxes + std::size_t{place} * (2 * Dim)));
+        scratch.hits(compared) = ((was ^ is) & open) | is << 16;
+      }
+      if (block.size() <= kLanes) new_boxes.store(block, 0);
+      for (std::size_t index = 0; index < compared; ++index) {
+        const Hits hits = scratch.hits(index);
+        if ((hits & 0xffff) != 0) report(block.ids()[moved[index]], block.ids() + first, hits, deltas);
+      }
+    }
+    // From the last places to the first, because a vector may write beyond the end of its row.
+    for (std::uint32_t first = (block.size() - 1) / kLanes * kLanes; block.size() > kLanes; first -= kLanes) {
+      arriving(block, boxes, first).store(block, first);
+      if (first == 0) break;
+    }
+    counters.deltas += deltas.size() - deltas_before;
+    counters.box_tests += 2 * (pairs(block.size()) - pairs(block.size() - moved.size()));
+  }
+
   static std::size_t transfer(Block& block, Ops ops) {
     Scratch scratch(ops.size());
     Tally tally;
@@ -298,6 +342,11 @@ struct Kernels {
                                        OpViews<std::uint##WIDTH##_t, DIM> ops) {                               \
     return Kernels<std::uint##WIDTH##_t, DIM>::transfer(block, ops);                                           \
   }                                                                                                            \
+  void refresh_##WIDTH##_##DIM(RowBlock<std::uint##WIDTH##_t, DIM>& block, const std::uint##WIDTH##_t* boxes,  \
+                               std::span<const std::uint32_t> moved, std::vector<OverlapDelta>& deltas,        \
+                               SapCounters& counters) {                                                        \
+    Kernels<std::uint##WIDTH##_t, DIM>::refresh(block, boxes, moved, deltas, counters);                        \
+  }                                                                                                            \
   void visit_##WIDTH##_##DIM(const RowBlock<std::uint##WIDTH##_t, DIM>& block,                                 \
                              VisitViews<std::uint##WIDTH##_t, DIM> visits, std::vector<OverlapDelta>& deltas,  \
                              SapCounters& counters) {                                                          \
@@ -315,6 +364,7 @@ namespace sweepgrid {
 #define SWEEPGRID_ROW_KERNELS(WIDTH, DIM)                                                                            \
   HWY_EXPORT(drain_##WIDTH##_##DIM);                                                                                 \
   HWY_EXPORT(transfer_##WIDTH##_##DIM);                                                                              \
+  HWY_EXPORT(refresh_##WIDTH##_##DIM);                                                                               \
   HWY_EXPORT(visit_##WIDTH##_##DIM);                                                                                 \
   template <>                                                                                                        \
   std::size_t RowKernels<std::uint##WIDTH##_t, DIM>::drain(Block& block, Ops ops, std::vector<OverlapDelta>& deltas, \
@@ -324,6 +374,12 @@ namespace sweepgrid {
   template <>                                                                                                        \
   std::size_t RowKernels<std::uint##WIDTH##_t, DIM>::transfer(Block& block, Ops ops) {                               \
     return HWY_DYNAMIC_DISPATCH(transfer_##WIDTH##_##DIM)(block, ops);                                               \
+  }                                                                                                                  \
+  template <>                                                                                                        \
+  void RowKernels<std::uint##WIDTH##_t, DIM>::refresh(Block& block, const std::uint##WIDTH##_t* boxes,               \
+                                                      std::span<const std::uint32_t> moved,                          \
+                                                      std::vector<OverlapDelta>& deltas, SapCounters& counters) {    \
+    HWY_DYNAMIC_DISPATCH(refresh_##WIDTH##_##DIM)(block, boxes, moved, deltas, counters);                            \
   }                                                                                                                  \
   template <>                                                                                                        \
   void RowKernels<std::uint##WIDTH##_t, DIM>::visit(const Block& block, Visits visits,                               \

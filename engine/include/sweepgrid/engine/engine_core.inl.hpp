@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <cstring>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -29,7 +30,7 @@ inline constexpr std::size_t kBlocksPerWorker = 3;
 inline constexpr std::uint64_t kSmallestTask = 8192;
 
 /// Share of objects that must have changed for cells to ask for boxes instead of being told.
-inline constexpr double kDenseShare = 0.35;
+inline constexpr double kDenseShare = 0.4;
 
 template <class Scalar, int Dim>
 void require_valid(const Config<Scalar, Dim>& config) {
@@ -122,10 +123,11 @@ void EngineCore<Scalar, Dim>::plan_route(std::vector<std::uint64_t>& costs) {
   for (const GridIndex grid : levels_.live()) levels_.grid(grid).begin_step(wanted, dense_);
 }
 
-// Judged by every 16th of the granules.
+// Judged by every 16th of the granules with a mark; in the others nothing has changed.
 template <class Scalar, int Dim>
 bool EngineCore<Scalar, Dim>::most_changed(const std::vector<std::uint32_t>& granules) const {
-  if (4 * granules.size() < objects_.granules()) return false;
+  const double marked = static_cast<double>(granules.size()) / std::max(1U, objects_.granules());
+  if (marked <= engine_core::kDenseShare) return false;
   std::size_t seen = 0;
   std::size_t changed = 0;
   for (std::size_t i = 0; i < granules.size(); i += 16) {
@@ -136,7 +138,7 @@ bool EngineCore<Scalar, Dim>::most_changed(const std::vector<std::uint32_t>& gra
     }
     seen += end - first;
   }
-  return static_cast<double>(changed) > engine_core::kDenseShare * static_cast<double>(seen);
+  return marked * static_cast<double>(changed) > engine_core::kDenseShare * static_cast<double>(seen);
 }
 
 template <class Scalar, int Dim>
@@ -148,12 +150,17 @@ void EngineCore<Scalar, Dim>::route(std::size_t block) {
     route_granule(block, granule);
   }
   out.calls = 0;
-  for (const GridIndex grid : levels_.live()) out.calls += levels_.grid(grid).calls(block);
+  for (const GridIndex grid : levels_.live()) {
+    levels_.grid(grid).end_block(block);
+    out.calls += levels_.grid(grid).calls(block);
+  }
 }
 
 // First the objects, then what is to be done with them: so their records can be on their way to the cache meanwhile.
 template <class Scalar, int Dim>
 void EngineCore<Scalar, Dim>::route_granule(std::size_t block, std::uint32_t granule) {
+  constexpr std::uint64_t kOnes = ~std::uint64_t{0} / 0xff;  // 1 in each byte
+  constexpr std::uint64_t kTops = 0x80 * kOnes;
   objects_.unmark_granule(granule);
   const ObjectId first = granule * Objects::kGranule;
   const std::uint32_t count = std::min(objects_.bound() - first, Objects::kGranule);
@@ -161,21 +168,29 @@ void EngineCore<Scalar, Dim>::route_granule(std::size_t block, std::uint32_t gra
   const std::uint8_t* const states = &objects_.state(first);  // a granule is contiguous
   std::array<std::uint8_t, Objects::kGranule> chosen;
   std::uint32_t used = 0;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    chosen[used] = static_cast<std::uint8_t>(i);
-    used += (states[i] & wanted) != 0 ? 1 : 0;
+  constexpr std::uint32_t kWord = sizeof(std::uint64_t);
+  for (std::uint32_t i = 0; i < count; i += kWord) {
+    std::uint64_t bytes = 0;
+    std::memcpy(&bytes, states + i, std::min(kWord, count - i));
+    bytes &= wanted * kOnes;
+    // The top bit of each byte that is not 0.
+    std::uint64_t marked = (bytes | ((bytes & ~kTops) + ~kTops)) & kTops;
+    for (; marked != 0; marked &= marked - 1) {
+      chosen[used++] = static_cast<std::uint8_t>(i + static_cast<std::uint32_t>(std::countr_zero(marked)) / 8);
+    }
   }
   Record* const records = &objects_.record(first);
+  RouteBlock& out = blocks_[block];
   constexpr std::uint32_t kAhead = 12;
   for (std::uint32_t i = 0; i < std::min(kAhead, used); ++i) __builtin_prefetch(&records[chosen[i]], 1);
   for (std::uint32_t i = 0; i < used; ++i) {
     if (i + kAhead < used) __builtin_prefetch(&records[chosen[i + kAhead]], 1);
-    route_object(block, first + chosen[i], records[chosen[i]], blocks_[block]);
+    route_object(block, first + chosen[i], records[chosen[i]], out);
   }
 }
 
 template <class Scalar, int Dim>
-void EngineCore<Scalar, Dim>::route_object(std::size_t block, ObjectId object, Record& record, RouteBlock& out) {
+inline void EngineCore<Scalar, Dim>::route_object(std::size_t block, ObjectId object, Record& record, RouteBlock& out) {
   std::uint8_t& state = objects_.state(object);
   if ((state & Objects::kQueued) == Objects::kUpdated) {
     ++out.counters.updates;
@@ -209,21 +224,21 @@ void EngineCore<Scalar, Dim>::route_object(std::size_t block, ObjectId object, R
 }
 
 template <class Scalar, int Dim>
-void EngineCore<Scalar, Dim>::note_change(Record& record, std::uint8_t state) const {
+inline void EngineCore<Scalar, Dim>::note_change(Record& record, std::uint8_t state) const {
   record.change = state;
   record.changed_at = steps_ + 1;
   record.grid_before = record.grid;
 }
 
 template <class Scalar, int Dim>
-void EngineCore<Scalar, Dim>::route_moved(std::size_t block, ObjectId object, Record& record, RouteBlock& out) {
+inline void EngineCore<Scalar, Dim>::route_moved(std::size_t block, ObjectId object, Record& record, RouteBlock& out) {
   const double width = LevelsType::width(record.box);
   GridType& grid = levels_.grid(record.grid);
   if (regridding_) {
     grid.route_insert(block, object, record.box);
   } else if (levels_.holds(record.grid, width)) {
     out.counters.migrations += grid.route_update(block, object, record.before, record.box) ? 1 : 0;
-    show(block, object, record.grid, &record.before, &record.box);
+    if (levels_.live().size() > 1) show(block, object, record.grid, &record.before, &record.box);
   } else {  // too wide for its grid: it leaves for another, and the two sides of the step are shown apart
     ++out.counters.migrations;
     grid.route_erase(block, object, record.before);
@@ -239,7 +254,6 @@ void EngineCore<Scalar, Dim>::route_moved(std::size_t block, ObjectId object, Re
 template <class Scalar, int Dim>
 void EngineCore<Scalar, Dim>::show(std::size_t block, ObjectId object, GridIndex home, const BoxType* before,
                                    const BoxType* after) {
-  if (levels_.live().size() == 1) return;
   for (const GridIndex other : levels_.live()) {
     if (other == home) continue;
     levels_.grid(other).route_visit(block, object, before, after, !levels_.coarser(other, home));

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <type_traits>
 #include <vector>
 
+#include <sweepgrid/engine/digit_sort.hpp>
 #include <sweepgrid/engine/events.hpp>
 
 namespace sweepgrid {
@@ -46,7 +48,7 @@ class EventOrder {
   /// Also drops doubles, which lie in one shard.
   void sort_shard(std::size_t index) {
     auto& shard = shards_[index];
-    std::sort(shard.begin(), shard.end(), kLess);
+    sort(shard);
     shard.erase(std::unique(shard.begin(), shard.end()), shard.end());
   }
 
@@ -58,6 +60,13 @@ class EventOrder {
   void merge_range(std::size_t index, std::vector<PairType>& out) const;
 
  private:
+  static void sort(std::span<PairType> pairs) {
+    if constexpr (DigitSort<Key>::template kFits<Order>) {
+      if (DigitSort<Key>::sort(pairs)) return;
+    }
+    std::sort(pairs.begin(), pairs.end(), kLess);
+  }
+
   std::vector<std::vector<PairType>> shards_;
   std::vector<std::size_t> cuts_;     // [range][shard]: where the range begins in the shard; one more range ends it
   std::vector<std::size_t> offsets_;  // [range]: where it begins in the output
@@ -114,7 +123,7 @@ void EventOrder<Key, Order>::merge_range(std::size_t index, std::vector<PairType
     runs += first != last ? 1 : 0;
     end = std::copy(first, last, end);
   }
-  if (runs > 1) std::sort(begin, end, kLess);
+  if (runs > 1) sort({begin, end});
 }
 
 }  // namespace sweepgrid

@@ -39,8 +39,8 @@ class Cell {
     other_->cell->drain(ops, deltas, counters);
   }
 
-  /// Ids of the residents, by place, of a cell of rows.
-  [[nodiscard]] std::span<const ObjectId> row_ids() const { return rows_.ids(); }
+  /// Precondition: has_rows().
+  [[nodiscard]] RowCell<Scalar, Dim>& rows() { return rows_; }
 
   /// To be told after each drain of a cell whose kind is chosen: what it added to the counters.
   void choose_kind(std::size_t ops, const SapCounters& work, const CellOptions& options, SapCounters& counters) {

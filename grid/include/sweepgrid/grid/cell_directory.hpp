@@ -95,7 +95,7 @@ class CellDirectory {
   }
 
   Block* insert(std::uint64_t name) {
-    if (2 * (blocks_ + 1) > buckets_.size()) rehash(std::max<std::size_t>(8, 2 * buckets_.size()));
+    if (4 * (blocks_ + 1) > buckets_.size()) rehash(std::max<std::size_t>(8, 2 * buckets_.size()));
     auto block = std::make_unique<Block>();
     block->cells.fill(kAbsent);
     Bucket& bucket = buckets_[bucket_of(name)];
@@ -118,7 +118,7 @@ class CellDirectory {
     }
     buckets_[hole].block.reset();
     --blocks_;
-    if (buckets_.size() > 64 && 16 * blocks_ < buckets_.size()) rehash(std::bit_ceil(4 * blocks_ + 8));
+    if (buckets_.size() > 64 && 32 * blocks_ < buckets_.size()) rehash(std::bit_ceil(8 * blocks_ + 8));
   }
 
   void rehash(std::size_t capacity) {
@@ -129,7 +129,7 @@ class CellDirectory {
     }
   }
 
-  std::vector<Bucket> buckets_;  // open addressing, linear probing, a power of two, at most half full
+  std::vector<Bucket> buckets_;  // open addressing, linear probing, a power of two, at most a quarter full
   std::size_t blocks_ = 0;
   std::size_t size_ = 0;
 };

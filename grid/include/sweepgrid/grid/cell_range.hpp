@@ -39,6 +39,30 @@ struct CellRange {
     return cells;
   }
 
+  /// Whether no axis has more than two cells: as it is for boxes that are not wider than cells.
+  [[nodiscard]] bool few() const {
+    std::uint32_t beyond_first = 0;
+    for (int axis = 0; axis < Dim; ++axis) beyond_first |= last(axis) - first(axis);
+    return beyond_first <= 1;
+  }
+
+  /// Calls `visit` with the code of each corner, and whether the corner is a cell that did not come before. How many
+  /// there are cannot be foretold, so a loop over just those would be slower. Precondition: few().
+  template <class Visit>
+  void for_each_corner(Visit&& visit) const {
+    std::array<std::array<std::uint64_t, 2>, Dim> parts;
+    unsigned wide = 0;  // axes of two cells, by bit
+    for (int axis = 0; axis < Dim; ++axis) {
+      parts[axis] = {CellCode<Dim>::part(axis, first(axis)), CellCode<Dim>::part(axis, last(axis))};
+      wide |= (last(axis) - first(axis)) << axis;
+    }
+    for (unsigned corner = 0; corner < 1U << Dim; ++corner) {
+      std::uint64_t code = 0;
+      for (int axis = 0; axis < Dim; ++axis) code |= parts[axis][corner >> axis & 1];
+      visit(code, (corner & ~wide) == 0);
+    }
+  }
+
   /// Calls `visit` with the code of every cell.
   template <class Visit>
   void for_each(Visit&& visit) const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -29,7 +30,7 @@ struct DrainOutput {
   std::vector<CellOp<Scalar, Dim>> ops;
   std::vector<CellOp<Scalar, Dim>> transfers;
   std::vector<typename SweepAndPrune<Scalar, Dim>::Resident> residents;
-  std::vector<ObjectId> resident_ids;
+  typename RowCell<Scalar, Dim>::RefreshScratch refresh;
   std::vector<typename SweepAndPrune<Scalar, Dim>::Visit> visits;
   std::vector<typename SweepAndPrune<Scalar, Dim>::Visit> late_visits;
 
@@ -70,9 +71,10 @@ class Grid {
   /// Sets in how many blocks ops arrive. `dense`: most objects have changed, so every cell
   /// asks for its residents' boxes by itself, and updates that stay within their cells need no call.
   void begin_step(std::size_t blocks, bool dense);
-  /// To be called before the first op of the block is routed.
+  /// To be called before the first op of the block is routed, and after the last.
   void begin_block(std::size_t block) { ops_.begin_block(block), late_.begin_block(block); }
-  /// Calls that the block has queued.
+  void end_block(std::size_t block) { look_up(block); }
+  /// Calls that the block has queued. Precondition: end_block().
   [[nodiscard]] std::size_t calls(std::size_t block) const { return ops_.written(block) + late_.written(block); }
 
   void route_insert(std::size_t block, ObjectId object, const BoxType& box);
@@ -133,28 +135,40 @@ class Grid {
   [[nodiscard]] std::size_t shard_of(std::uint64_t code) const {
     return shards_.size() == 1 ? 0 : Code::hash(Code::block(code)) >> shard_shift_;
   }
-  /// A block of neighbouring cells as routing sees it: one look-up serves all cells of the block.
-  struct BlockView {
-    std::uint64_t name = ~std::uint64_t{0};
-    std::size_t shard = 0;
-    const CellId* cells = nullptr;
+  /// Calls of a block of objects whose cells are yet to be looked up: many in a row, so that one look-up does not wait
+  /// for another, nor for branches that nobody could foresee.
+  struct Waiting {
+    static constexpr std::size_t kMost = 128;
+    static constexpr std::size_t kCorners = Dim <= 3 ? std::size_t{1} << Dim : 1;
+    std::array<OpQueues::Fresh, kMost + kCorners> calls;
+    std::size_t count = 0;
   };
-  void push(OpQueues& queues, BlockView& view, std::size_t block, std::uint64_t code, ObjectId object, CellCall call);
+  void call(std::size_t block, std::uint64_t code, ObjectId object, CellCall call);
+  void call_all(std::size_t block, const Range& range, ObjectId object, CellCall call);
+  void look_up(std::size_t block);
   CellId locate(Shard& shard, const OpQueues::Fresh& op);
   CellId make_cell_at(Shard& shard, std::uint64_t code, CellId& place);
   template <class Boxes>
   void drain_cell(Shard& shard, const ActiveCell& active, const Boxes& boxes, Output& out);
   template <class Boxes>
-  bool sort_out(const CellType& cell, std::span<const Call> calls, const Boxes& boxes, Output& out) const;
-  static void drain_visited(CellType& cell, Output& out);
+  static std::size_t take_ops(std::span<const Call> calls, const Boxes& boxes, Output& out);
+  template <class Boxes>
+  std::size_t apply_ops(CellType& cell, const Boxes& boxes, Output& out) const;
+  template <class Boxes>
+  static std::size_t apply_dense(CellType& cell, const Boxes& boxes, Output& out);
+  template <class Boxes>
+  static void take_visits(std::span<const Call> calls, const Boxes& boxes, Output& out);
+  template <class Boxes>
+  std::size_t drain_visited(CellType& cell, std::span<const Call> calls, const Boxes& boxes, Output& out) const;
 
   GridSpec<Scalar, Dim> spec_;
   CellOptions options_;
   int shard_shift_ = 64;
   bool dense_ = false;
   std::vector<Shard> shards_;
-  OpQueues ops_;   // inserts, updates, erases
-  OpQueues late_;  // what comes after them
+  std::vector<Waiting> waiting_;  // by block
+  OpQueues ops_;                  // inserts, updates, erases
+  OpQueues late_;                 // what comes after them
 };
 
 }  // namespace sweepgrid

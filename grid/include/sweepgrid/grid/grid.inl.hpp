@@ -7,6 +7,7 @@
 #include <utility>
 
 #include <sweepgrid/grid/grid.hpp>
+#include <sweepgrid/grid/grid_route.inl.hpp>
 #include <sweepgrid/sap/invariant.hpp>
 #include <sweepgrid/sap/prefetch.hpp>
 
@@ -20,104 +21,8 @@ template <class Scalar, int Dim>
 void Grid<Scalar, Dim>::begin_step(std::size_t blocks, bool dense) {
   ops_.reset(blocks, shards_.size());
   late_.reset(blocks, shards_.size());
+  waiting_.resize(blocks);
   dense_ = dense;
-}
-
-// ---- route
-
-template <class Scalar, int Dim>
-inline void Grid<Scalar, Dim>::push(OpQueues& queues, BlockView& view, std::size_t block, std::uint64_t code,
-                                    ObjectId object, CellCall call) {
-  if (const std::uint64_t name = Code::block(code); name != view.name) {
-    view.name = name;
-    view.shard = shard_of(code);
-    view.cells = shards_[view.shard].directory.find_block(name);
-  }
-  const CellId id = view.cells == nullptr ? CellDirectory<Dim>::kAbsent : view.cells[Code::inner(code)];
-  auto& list = queues.list(block, view.shard);
-  if (id != CellDirectory<Dim>::kAbsent) {
-    list.known.push_back({id, static_cast<std::uint32_t>(call), object});
-  } else {
-    list.fresh.push_back({code, object, call});
-  }
-}
-
-template <class Scalar, int Dim>
-void Grid<Scalar, Dim>::route_insert(std::size_t block, ObjectId object, const BoxType& box) {
-  BlockView view;
-  spec_.range(box).for_each([&](std::uint64_t cell) { push(ops_, view, block, cell, object, CellCall::kInsert); });
-}
-
-template <class Scalar, int Dim>
-bool Grid<Scalar, Dim>::route_update(std::size_t block, ObjectId object, const BoxType& before, const BoxType& after) {
-  const Range range = spec_.range(after);
-  const Range old_range = spec_.range(before);
-  BlockView view;
-  if (range == old_range) {
-    if (dense_) return false;
-    range.for_each([&](std::uint64_t cell) { push(ops_, view, block, cell, object, CellCall::kUpdate); });
-    return false;
-  }
-  range.for_each([&](std::uint64_t cell) {
-    const bool known = old_range.contains(Code::coordinates(cell));
-    if (known && dense_) return;
-    push(ops_, view, block, cell, object, known ? CellCall::kUpdate : CellCall::kInsert);
-  });
-  old_range.for_each([&](std::uint64_t cell) {
-    if (!range.contains(Code::coordinates(cell))) push(ops_, view, block, cell, object, CellCall::kErase);
-  });
-  return true;
-}
-
-template <class Scalar, int Dim>
-void Grid<Scalar, Dim>::route_erase(std::size_t block, ObjectId object, const BoxType& before) {
-  BlockView view;
-  spec_.range(before).for_each([&](std::uint64_t cell) { push(ops_, view, block, cell, object, CellCall::kErase); });
-}
-
-template <class Scalar, int Dim>
-void Grid<Scalar, Dim>::route_attach(std::size_t block, ObjectId object, const BoxType& box) {
-  BlockView view;
-  spec_.range(box).for_each([&](std::uint64_t cell) { push(late_, view, block, cell, object, CellCall::kAttach); });
-}
-
-template <class Scalar, int Dim>
-void Grid<Scalar, Dim>::route_detach(std::size_t block, ObjectId object, const BoxType& box) {
-  BlockView view;
-  spec_.range(box).for_each([&](std::uint64_t cell) { push(late_, view, block, cell, object, CellCall::kDetach); });
-}
-
-template <class Scalar, int Dim>
-void Grid<Scalar, Dim>::route_visit(std::size_t block, ObjectId object, const BoxType* before, const BoxType* after,
-                                    bool resting_only) {
-  const Range was = spec_.range(before != nullptr ? *before : *after);
-  const Range is = spec_.range(after != nullptr ? *after : *before);
-  const CellCall call = before == nullptr  ? CellCall::kVisitIs
-                        : after == nullptr ? CellCall::kVisitWas
-                                           : CellCall::kVisit;
-  const bool skip_covered = resting_only && call == CellCall::kVisit;
-  const auto concerns = [&](const CellCoordinates<Dim>& cell) {
-    return !(skip_covered && was.surrounds(cell) && is.surrounds(cell));
-  };
-  BlockView view;
-  // A huge box has more cells than exist.
-  if (resting_only && is.count() + was.count() > 64 && is.count() + was.count() > static_cast<double>(cell_count())) {
-    for (const Shard& shard : shards_) {
-      shard.directory.for_each([&](std::uint64_t code) {
-        const auto cell = Code::coordinates(code);
-        if ((is.contains(cell) || was.contains(cell)) && concerns(cell)) push(late_, view, block, code, object, call);
-      });
-    }
-    return;
-  }
-  is.for_each([&](std::uint64_t code) {
-    if (!skip_covered || concerns(Code::coordinates(code))) push(late_, view, block, code, object, call);
-  });
-  if (was == is) return;
-  was.for_each([&](std::uint64_t code) {
-    const auto cell = Code::coordinates(code);
-    if (!is.contains(cell) && concerns(cell)) push(late_, view, block, code, object, call);
-  });
 }
 
 // ---- gather
@@ -233,59 +138,82 @@ void Grid<Scalar, Dim>::drain_cell(Shard& shard, const ActiveCell& active, const
   const bool judged = options_.kind == CellKind::kAuto && cell.size() >= KindChoice::kManyObjects / 2;
   const SapCounters counters_before = judged ? out.counters : SapCounters{};
   const auto calls = std::span<const Call>(shard.calls).subspan(active.first_call, active.call_count);
-  if (sort_out(cell, calls, boxes, out)) {
-    cell.drain(out.ops, out.deltas, out.counters);
-  } else {
-    drain_visited(cell, out);
-  }
-  if (judged) cell.choose_kind(out.ops.size(), out.counters - counters_before, options_, out.counters);
+  const std::size_t heard = take_ops(calls, boxes, out);
+  const std::size_t ops =
+      heard == calls.size() ? apply_ops(cell, boxes, out) : drain_visited(cell, calls.subspan(heard), boxes, out);
+  if (judged) cell.choose_kind(ops, out.counters - counters_before, options_, out.counters);
   if (out.deltas.size() > before) out.runs.push_back({out.deltas.size(), cell.code()});
   if (cell.size() == 0) out.emptied.push_back(active.cell);
 }
 
-// Turns calls into ops and visits with boxes; returns whether there are but ops.
+// Inserts, updates and erases as ops with boxes; returns how many calls they are. The others follow.
 template <class Scalar, int Dim>
 template <class Boxes>
-bool Grid<Scalar, Dim>::sort_out(const CellType& cell, std::span<const Call> calls, const Boxes& boxes,
-                                 Output& out) const {
-  using Ordered = OrderedBox<Scalar, Dim>;
-  out.ops.clear();
-  std::size_t i = 0;
-  for (; i < calls.size() && calls[i].call <= CellCall::kErase; ++i) {
-    const auto [object, call] = calls[i];
-    out.ops.push_back({object,
-                       call == CellCall::kInsert   ? OpKind::kInsert
-                       : call == CellCall::kUpdate ? OpKind::kUpdate
-                                                   : OpKind::kErase,
-                       Ordered(boxes.after(object))});
+std::size_t Grid<Scalar, Dim>::take_ops(std::span<const Call> calls, const Boxes& boxes, Output& out) {
+  static_assert(static_cast<int>(CellCall::kInsert) == static_cast<int>(OpKind::kInsert) &&
+                static_cast<int>(CellCall::kUpdate) == static_cast<int>(OpKind::kUpdate) &&
+                static_cast<int>(CellCall::kErase) == static_cast<int>(OpKind::kErase));
+  out.ops.resize(calls.size());
+  std::size_t count = 0;
+  for (; count < calls.size() && calls[count].call <= CellCall::kErase; ++count) {
+    const auto [object, call] = calls[count];
+    out.ops[count] = {object, static_cast<OpKind>(call), OrderedBox<Scalar, Dim>(boxes.after(object))};
   }
-  if (dense_) {
-    const std::size_t called = out.ops.size();
-    const auto is_called = [&](ObjectId object) {
-      for (std::size_t k = 0; k < called; ++k) {
-        if (out.ops[k].object == object) return true;
+  out.ops.resize(count);
+  return count;
+}
+
+// Returns how many ops there were.
+template <class Scalar, int Dim>
+template <class Boxes>
+std::size_t Grid<Scalar, Dim>::apply_ops(CellType& cell, const Boxes& boxes, Output& out) const {
+  if (!dense_) {
+    cell.drain(out.ops, out.deltas, out.counters);
+    return out.ops.size();
+  }
+  if (!cell.has_rows()) return apply_dense(cell, boxes, out);
+  // What goes has its old box, like those that stay; what comes meets the new ones. So each pair still changes once.
+  const auto inserts =
+      std::partition(out.ops.begin(), out.ops.end(), [](const auto& op) { return op.kind == OpKind::kErase; });
+  const auto erases = static_cast<std::size_t>(inserts - out.ops.begin());
+  const auto ops = std::span(std::as_const(out.ops));
+  cell.drain(ops.first(erases), out.deltas, out.counters);
+  const std::size_t updates = cell.rows().refresh(boxes, out.refresh, out.deltas, out.counters);
+  cell.drain(ops.subspan(erases), out.deltas, out.counters);
+  return out.ops.size() + updates;
+}
+
+// The same for kinds that do not ask for boxes themselves.
+template <class Scalar, int Dim>
+template <class Boxes>
+std::size_t Grid<Scalar, Dim>::apply_dense(CellType& cell, const Boxes& boxes, Output& out) {
+  out.residents.clear();
+  cell.kind().append_residents(out.residents);
+  const std::size_t called = out.ops.size();
+  for (const auto& resident : out.residents) {
+    const ObjectId object = resident.object;
+    const auto is_called = [&] {
+      for (std::size_t i = 0; i < called; ++i) {
+        if (out.ops[i].object == object) return true;
       }
       return false;
     };
-    std::span<const ObjectId> residents = cell.row_ids();
-    if (!cell.has_rows()) {
-      out.residents.clear();
-      cell.kind().append_residents(out.residents);
-      out.resident_ids.clear();
-      for (const auto& resident : out.residents) out.resident_ids.push_back(resident.object);
-      residents = out.resident_ids;
-    }
-    for (const ObjectId object : residents) {
-      if (!boxes.changed(object) || (called != 0 && is_called(object))) continue;
-      out.ops.push_back({object, OpKind::kUpdate, Ordered(boxes.after(object))});
-    }
+    if (!boxes.changed(object) || is_called()) continue;
+    out.ops.push_back({object, OpKind::kUpdate, OrderedBox<Scalar, Dim>(boxes.after(object))});
   }
-  if (i == calls.size()) return true;
+  cell.drain(out.ops, out.deltas, out.counters);
+  return out.ops.size();
+}
+
+// Calls after the ops: visits and transfers, with boxes.
+template <class Scalar, int Dim>
+template <class Boxes>
+void Grid<Scalar, Dim>::take_visits(std::span<const Call> calls, const Boxes& boxes, Output& out) {
+  using Ordered = OrderedBox<Scalar, Dim>;
   out.visits.clear();
   out.late_visits.clear();
   out.transfers.clear();
-  for (; i < calls.size(); ++i) {
-    const auto [object, call] = calls[i];
+  for (const auto& [object, call] : calls) {
     if (call >= CellCall::kAttach) {
       out.transfers.push_back(
           {object, call == CellCall::kAttach ? OpKind::kInsert : OpKind::kErase, Ordered(boxes.after(object))});
@@ -299,16 +227,18 @@ bool Grid<Scalar, Dim>::sort_out(const CellType& cell, std::span<const Call> cal
     if (visit.is) visit.after = Ordered(boxes.after(object));
     out.visits.push_back(visit);
   }
-  return false;
 }
 
 // Visitors meet residents as they were with the box that they had, and residents as they are with the box that they
-// have. Where residents rest, both at once, which leaves out pairs that go on.
+// have. Where residents rest, both at once, which leaves out pairs that go on. Returns how many ops there were.
 template <class Scalar, int Dim>
-void Grid<Scalar, Dim>::drain_visited(CellType& cell, Output& out) {
-  auto& kind = cell.kind();
-  if (out.ops.empty()) {
-    kind.visit(out.visits, out.deltas, out.counters);
+template <class Boxes>
+std::size_t Grid<Scalar, Dim>::drain_visited(CellType& cell, std::span<const Call> calls, const Boxes& boxes,
+                                             Output& out) const {
+  take_visits(calls, boxes, out);
+  std::size_t ops = 0;
+  if (out.ops.empty() && !dense_) {
+    cell.kind().visit(out.visits, out.deltas, out.counters);
   } else {
     for (auto& visit : out.visits) {
       if (!visit.is) continue;
@@ -317,11 +247,12 @@ void Grid<Scalar, Dim>::drain_visited(CellType& cell, Output& out) {
       visit.is = false;
     }
     std::erase_if(out.visits, [](const auto& visit) { return !visit.was; });
-    kind.visit(out.visits, out.deltas, out.counters);
-    kind.drain(out.ops, out.deltas, out.counters);
-    kind.visit(out.late_visits, out.deltas, out.counters);
+    cell.kind().visit(out.visits, out.deltas, out.counters);
+    ops = apply_ops(cell, boxes, out);
+    cell.kind().visit(out.late_visits, out.deltas, out.counters);
   }
-  if (!out.transfers.empty()) kind.transfer(out.transfers, out.counters);
+  if (!out.transfers.empty()) cell.kind().transfer(out.transfers, out.counters);
+  return ops;
 }
 
 template <class Scalar, int Dim>
@@ -377,7 +308,7 @@ std::size_t Grid<Scalar, Dim>::cell_bytes() const {
 
 template <class Scalar, int Dim>
 std::size_t Grid<Scalar, Dim>::queue_bytes() const {
-  std::size_t total = ops_.bytes() + late_.bytes();
+  std::size_t total = ops_.bytes() + late_.bytes() + waiting_.capacity() * sizeof(Waiting);
   for (const Shard& shard : shards_) {
     total += shard.calls.capacity() * sizeof(Call) + shard.active.capacity() * sizeof(ActiveCell);
   }

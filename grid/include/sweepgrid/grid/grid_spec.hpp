@@ -53,7 +53,7 @@ class GridSpec {
 
   [[nodiscard]] std::uint32_t coordinate(int axis, Scalar value) const { return coordinate_of(axis, value); }
 
-  [[nodiscard]] CellRange<Dim> range(const Box<Scalar, Dim>& box) const {
+  [[nodiscard, gnu::always_inline]] CellRange<Dim> range(const Box<Scalar, Dim>& box) const {
     std::array<Scalar, 2 * static_cast<std::size_t>(Dim)> ends;  // side by side, so that one vector holds them
     for (int axis = 0; axis < Dim; ++axis) ends[axis] = box.min[axis], ends[Dim + axis] = box.max[axis];
     CellRange<Dim> range;

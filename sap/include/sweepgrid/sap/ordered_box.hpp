@@ -47,7 +47,7 @@ struct OrderedBox {
   std::array<Bits, static_cast<std::size_t>(Dim)> max;
 
   OrderedBox() = default;
-  explicit OrderedBox(const Box<Scalar, Dim>& box) {
+  [[gnu::always_inline]] explicit OrderedBox(const Box<Scalar, Dim>& box) {
     // Side by side, so that vectors hold them.
     std::array<Scalar, 2 * static_cast<std::size_t>(Dim)> from;
     std::array<Bits, 2 * static_cast<std::size_t>(Dim)> to;

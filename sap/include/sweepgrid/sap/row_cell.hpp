@@ -35,6 +35,19 @@ class RowCell final : public SweepAndPrune<Scalar, Dim> {
     if (done != ops.size()) refuse_op(ops[done]);
   }
 
+  /// Memory for refresh(), to be used again for other cells.
+  struct RefreshScratch {
+    std::vector<OrderedBox<Scalar, Dim>> boxes;
+    std::vector<std::uint32_t> moved;
+  };
+
+  /// Asks for the boxes of all residents: `boxes` tells whether one has changed(object), and the box after(object) that
+  /// it has now. The same as a drain() of an update for each that has changed, but nobody has to be looked up. Returns
+  /// how many have.
+  template <class Boxes>
+  std::size_t refresh(const Boxes& boxes, RefreshScratch& scratch, std::vector<OverlapDelta>& deltas,
+                      SapCounters& counters);
+
   void visit(std::span<const Visit> visits, std::vector<OverlapDelta>& deltas, SapCounters& counters) const override {
     if (visits.empty() || rows_.size() == 0) return;
     Kernels::visit(rows_, typename Kernels::Visits(visits), deltas, counters);
@@ -63,6 +76,27 @@ class RowCell final : public SweepAndPrune<Scalar, Dim> {
 
   RowBlock<Bits, Dim> rows_;
 };
+
+template <class Scalar, int Dim>
+template <class Boxes>
+std::size_t RowCell<Scalar, Dim>::refresh(const Boxes& boxes, RefreshScratch& scratch,
+                                          std::vector<OverlapDelta>& deltas, SapCounters& counters) {
+  const std::uint32_t size = rows_.size();
+  if (size == 0) return 0;
+  if (scratch.moved.size() < size) scratch.moved.resize(size), scratch.boxes.resize(size);
+  const ObjectId* const ids = rows_.ids();
+  OrderedBox<Scalar, Dim>* const now = scratch.boxes.data();
+  std::uint32_t* const moved = scratch.moved.data();
+  std::uint32_t count = 0;
+  for (std::uint32_t place = 0; place < size; ++place) {
+    now[place] = OrderedBox<Scalar, Dim>(boxes.after(ids[place]));
+    moved[count] = place;
+    count += boxes.changed(ids[place]) ? 1 : 0;  // no branch on what cannot be foretold
+  }
+  static_assert(sizeof(*now) == 2 * Dim * sizeof(Bits));
+  if (count != 0) Kernels::refresh(rows_, now->min.data(), {moved, count}, deltas, counters);
+  return count;
+}
 
 template <class Scalar, int Dim>
 void RowCell<Scalar, Dim>::append_residents(std::vector<Resident>& residents) const {

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -28,6 +29,10 @@ struct RowKernels {
 
   static std::size_t drain(Block& block, Ops ops, std::vector<OverlapDelta>& deltas, SapCounters& counters);
   static std::size_t transfer(Block& block, Ops ops);
+  /// Gives every object the box that `boxes` holds at its place, Dim mins and then Dim maxes. At all places but the
+  /// `moved` ones it is the box that the object has.
+  static void refresh(Block& block, const Bits* boxes, std::span<const std::uint32_t> moved,
+                      std::vector<OverlapDelta>& deltas, SapCounters& counters);
   static void visit(const Block& block, Visits visits, std::vector<OverlapDelta>& deltas, SapCounters& counters);
 };
 

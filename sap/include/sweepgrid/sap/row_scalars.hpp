@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include <sweepgrid/sap/overlap_delta.hpp>
@@ -32,6 +33,19 @@ class RowScalars {
 
   static std::size_t transfer(Block& block, Ops ops) {
     return apply(block, ops, [](ObjectId, std::uint32_t, const Bits*, const Bits*) {});
+  }
+
+  static void refresh(Block& block, const Bits* boxes, std::span<const std::uint32_t> moved,
+                      std::vector<OverlapDelta>& deltas, SapCounters& counters) {
+    const std::size_t deltas_before = deltas.size();
+    for (const std::uint32_t place : moved) {
+      const Bits* const to = boxes + std::size_t{place} * (2 * Dim);
+      Bits from[2 * Dim];
+      for (int row = 0; row < 2 * Dim; ++row) from[row] = block.bits(row, place);
+      compare(block, block.ids()[place], place, from, to, deltas, counters);
+      for (int row = 0; row < 2 * Dim; ++row) block.set_bits(row, place, to[row]);
+    }
+    counters.deltas += deltas.size() - deltas_before;
   }
 
   static void visit(const Block& block, Visits visits, std::vector<OverlapDelta>& deltas, SapCounters& counters) {
