@@ -19,8 +19,8 @@ enum class Reduction {
   kWitnessCounts,
 };
 
-/// Settings of an engine. Events do not depend on any of them but `envelope`; time and memory do. The defaults suit most
-/// scenes.
+/// Settings of an engine. Events do not depend on any of them but `envelope`; time and memory do. The defaults suit
+/// most scenes.
 template <class Scalar, int Dim>
 struct Config {
   /// Kind of the cells and its parameters.

@@ -60,8 +60,8 @@ class Engine {
   /// As above for keys[i], boxes[i]; handles are returned in order. Also an error: a key twice in `keys`. The fastest
   /// way to insert many. O(n / workers), and what is serial is short.
   std::vector<Handle> insert(std::span<const Key> keys, std::span<const BoxType> boxes);
-  /// As the first, with a margin of the object's own (EnvelopeOptions::margin). Also errors: Config::envelope is absent;
-  /// the margin is negative or not finite.
+  /// As the first, with a margin of the object's own (EnvelopeOptions::margin). Also errors: Config::envelope is
+  /// absent; the margin is negative or not finite.
   Handle insert(const Key& key, const BoxType& box, double margin);
 
   /// Queues a new box. The last update before a step wins. An update to the box that the object has costs nothing more.

@@ -105,9 +105,7 @@ void SWEEPGRID_ENGINE::erase(Handle object) {
 }
 
 SWEEPGRID_ENGINE_TEMPLATE
-void SWEEPGRID_ENGINE::erase(const Key& key) {
-  erase(core_.objects().handle(live(key, "erase")));
-}
+void SWEEPGRID_ENGINE::erase(const Key& key) { erase(core_.objects().handle(live(key, "erase"))); }
 
 // ---- the step and what it leaves
 
