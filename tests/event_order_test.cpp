@@ -66,6 +66,13 @@ TEST(EventOrder, IsTheSameForAnyNumberOfShardsAndRanges) {
   }
 }
 
+TEST(EventOrder, CutsManyShardsOfFewPairs) {
+  std::vector<Pair<int>> pairs;
+  for (int i = 0; i < 1024; ++i) pairs.push_back({i, i + 1});
+  const auto evenly = [](const Pair<int>& pair) { return static_cast<std::size_t>(pair.first) % 64; };
+  EXPECT_EQ((sorted_by<int, std::less<int>>(pairs, 64, 128, evenly)), pairs);
+}
+
 TEST(EventOrder, CutsWhereOneKeyIsInMostPairs) {
   // A ground plane: one first key, so that cuts must fall between pairs and not between keys.
   for (const int keys : {1, 2, 3}) expect_same_for_any_shards_and_ranges<std::less<int>>(5000, keys);

@@ -30,7 +30,7 @@ ObjectPartition::ObjectPartition(Executor& executor, std::span<const Handle> obj
   std::uint32_t highest = 0;
   for (const Extent& extent : extents) highest = std::max(highest, extent.highest);
   const std::uint32_t lowest = extents.front().lowest;
-  const std::size_t wanted = std::min<std::size_t>(ranges_, 16 * static_cast<std::size_t>(executor.concurrency()));
+  const std::size_t wanted = std::min<std::size_t>(ranges_, 4 * static_cast<std::size_t>(executor.concurrency()));
   const int shift = std::bit_width((highest - lowest) / wanted);
   lists_.assign(
       executor, count_, ((highest - lowest) >> shift) + 1,

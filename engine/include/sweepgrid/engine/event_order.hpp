@@ -67,14 +67,20 @@ class EventOrder {
     std::sort(pairs.begin(), pairs.end(), kLess);
   }
 
+  /// Where range `index` begins in a shard; there is one more, at which the last one ends.
+  [[nodiscard]] auto begin_of(std::size_t index, const std::vector<PairType>& shard) const {
+    if (index == 0) return shard.begin();
+    if (index > splitters_.size()) return shard.end();
+    return std::lower_bound(shard.begin(), shard.end(), splitters_[index - 1], kLess);
+  }
+
   std::vector<std::vector<PairType>> shards_;
-  std::vector<std::size_t> cuts_;     // [range][shard]: where the range begins in the shard; one more range ends it
-  std::vector<std::size_t> offsets_;  // [range]: where it begins in the output
+  std::vector<PairType> splitters_;  // the least pair of each range but the first
 };
 
 template <class Key, class Order>
 std::size_t EventOrder<Key, Order>::cut(std::size_t ranges, std::vector<PairType>& out) {
-  constexpr std::size_t kSmallest = 512;  // a range with fewer events is not worth a task
+  constexpr std::size_t kSmallest = 256;  // a range with fewer events is not worth a task
   constexpr std::size_t kSamples = 16;    // of all shards for each range
   if (shards_.size() == 1) {
     out.swap(shards_[0]);
@@ -83,43 +89,36 @@ std::size_t EventOrder<Key, Order>::cut(std::size_t ranges, std::vector<PairType
   std::size_t total = 0;
   for (const auto& shard : shards_) total += shard.size();
   out.resize(total);
+  splitters_.clear();
   if (total == 0) return 0;
   ranges = std::clamp<std::size_t>(total / kSmallest, 1, ranges);
+  if (ranges == 1) return 1;
 
   std::vector<PairType> samples;
-  if (ranges > 1) {
-    const std::size_t stride = std::max<std::size_t>(1, total / (kSamples * ranges));
-    for (const auto& shard : shards_) {
-      for (std::size_t i = stride / 2; i < shard.size(); i += stride) samples.push_back(shard[i]);
-    }
-    std::sort(samples.begin(), samples.end(), kLess);
+  const std::size_t stride = std::max<std::size_t>(1, total / (kSamples * ranges));
+  std::size_t next = stride / 2;  // in the shards one after the other: short ones have their share, too
+  for (const auto& shard : shards_) {
+    for (; next < shard.size(); next += stride) samples.push_back(shard[next]);
+    next -= shard.size();
   }
-  const std::size_t width = shards_.size();
-  cuts_.assign((ranges + 1) * width, 0);
-  offsets_.assign(ranges + 1, 0);
-  for (std::size_t range = 1; range <= ranges; ++range) {
-    for (std::size_t s = 0; s < width; ++s) {
-      const auto& shard = shards_[s];
-      cuts_[range * width + s] =
-          range == ranges ? shard.size()
-                          : static_cast<std::size_t>(std::lower_bound(shard.begin(), shard.end(),
-                                                                      samples[range * samples.size() / ranges], kLess) -
-                                                     shard.begin());
-      offsets_[range] += cuts_[range * width + s];
-    }
+  sort(samples);
+  for (std::size_t range = 1; range < ranges; ++range) {
+    splitters_.push_back(samples[range * samples.size() / ranges]);
   }
   return ranges;
 }
 
+// Looks for the ends of its range itself: for all ranges at once that would be the longest serial part of a step.
 template <class Key, class Order>
 void EventOrder<Key, Order>::merge_range(std::size_t index, std::vector<PairType>& out) const {
-  const std::size_t width = shards_.size();
-  auto end = out.begin() + static_cast<std::ptrdiff_t>(offsets_[index]);
+  std::size_t place = 0;
+  for (const auto& shard : shards_) place += static_cast<std::size_t>(begin_of(index, shard) - shard.begin());
+  auto end = out.begin() + static_cast<std::ptrdiff_t>(place);
   const auto begin = end;
   std::size_t runs = 0;
-  for (std::size_t s = 0; s < width; ++s) {
-    const auto first = shards_[s].begin() + static_cast<std::ptrdiff_t>(cuts_[index * width + s]);
-    const auto last = shards_[s].begin() + static_cast<std::ptrdiff_t>(cuts_[(index + 1) * width + s]);
+  for (const auto& shard : shards_) {
+    const auto first = begin_of(index, shard);
+    const auto last = begin_of(index + 1, shard);
     runs += first != last ? 1 : 0;
     end = std::copy(first, last, end);
   }
