@@ -77,6 +77,19 @@ TEST(EngineStats, GridsAreMadeForSizesThatExistAndGoWithThem) {
   EXPECT_EQ(engine.stats().cell_size, 1);
 }
 
+TEST(EngineStats, ACrowdAtOnePointKeepsItsCells) {
+  Engine2 engine(serial());
+  for (std::uint64_t key = 0; key < 300; ++key) engine.insert(key, square(0, 0, 1));
+  engine.step();
+  for (int step = 1; step < 6; ++step) {
+    for (std::uint64_t key = 0; key < 300; ++key) {
+      engine.update(key, square(static_cast<float>(step * key) * 1e-5F, static_cast<float>(key) * 1e-5F, 1));
+    }
+    engine.step();
+  }
+  EXPECT_EQ(engine.stats().total.regrids, 1u);  // the first: no other cells would divide such a crowd
+}
+
 TEST(EngineStats, ABoxOverEverythingIsInFewCellsOfABoundedGrid) {
   Config2 config = serial();
   config.reduction = Reduction::kWitnessCounts;

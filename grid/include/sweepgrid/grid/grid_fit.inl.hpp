@@ -149,10 +149,12 @@ double size_for_population(Census<Scalar, Dim>& census, double population) {
 template <class Scalar, int Dim>
 double cheapest_size(Census<Scalar, Dim>& census, double overhead) {
   // Cells not much wider than boxes send them to coarser grids, which the model does not know.
-  const double smallest = 0.65 * smallest_cell(census.sample);
+  const double usual = smallest_cell(census.sample);
+  const double largest = census.extent.longest();
+  if (largest <= usual) return usual;  // all are in one another's reach: cells divide nothing, and keep their size
+  const double smallest = 0.65 * usual;
   double best = std::max(smallest, size_for_population(census, 12));
   double least = census.cost(best, overhead);
-  const double largest = census.extent.longest();
   for (const double factor : {1.25, 0.8}) {
     const double start = best;
     for (double size = best * factor; size >= smallest && size <= largest; size *= factor) {
