@@ -15,7 +15,6 @@
 #include "engine_setting.hpp"
 #include "figures_file.hpp"
 #include "rounds.hpp"
-#include "scene_script.hpp"
 #include "standard_scenes.hpp"
 
 namespace sweepgrid::bench {
