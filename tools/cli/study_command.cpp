@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "study/accuracy/accuracy_study.hpp"
 #include "study/figures/figures_study.hpp"
 #include "study/scaling/scaling_study.hpp"
 #include "study/stability/stability_study.hpp"
@@ -31,6 +32,7 @@ StudyCommand::StudyCommand(CLI::App& app)
   add_figures();
   add_scaling();
   add_stability();
+  add_accuracy();
 }
 
 bool StudyCommand::run() const {
@@ -73,6 +75,17 @@ void StudyCommand::add_stability() {
   const auto options = std::make_shared<study::StudyOptions>();
   add_study_options(*command, *options);
   studies_.push_back({command, [options] { return study::stability_study(*options); }});
+}
+
+void StudyCommand::add_accuracy() {
+  CLI::App* command = command_->add_subcommand("accuracy", "Speed against accuracy: every setting beside the truths");
+  const auto options = std::make_shared<study::AccuracyOptions>();
+  add_study_options(*command, options->study);
+  command->add_option("SCENE", options->scenes, "As of `sweepgrid run` (default: six generated ones)");
+  command->add_option("--narrow-cost", options->narrow_cost, "Of a narrow phase per pair (default: measured)")
+      ->type_name("NS")
+      ->check(CLI::NonNegativeNumber.description(""));
+  studies_.push_back({command, [options] { return study::accuracy_study(*options); }});
 }
 
 }  // namespace sweepgrid

@@ -29,6 +29,7 @@ class StudyCommand {
   void add_figures();
   void add_scaling();
   void add_stability();
+  void add_accuracy();
 
   CLI::App* command_;
   std::vector<Study> studies_;

@@ -1,0 +1,77 @@
+#include "study/accuracy/configurations.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace sweepgrid::study {
+
+const std::vector<Configuration>& configurations() {
+  using enum OnViolation;
+  // Margins by displacement of 2 * (stride - 1) are what a stride needs.
+  static const std::vector<Configuration> all = {
+      {"double"},
+      {"float, nearest", Door::kFloatNearest},
+      {"float, outward", Door::kFloatOutward},
+      {"32 bits", Door::kInt32},
+      {"16 bits", Door::kInt16},
+      {"margin 0.02", Door::kDouble, EnvelopeOptions{.margin = 0.02}},
+      {"margin 0.1", Door::kDouble, EnvelopeOptions{.margin = 0.1}},
+      {"margin 0.4", Door::kDouble, EnvelopeOptions{.margin = 0.4}},
+      {"margin 0.02, exact", Door::kDouble, EnvelopeOptions{.margin = 0.02, .exact = true}},
+      {"margin 0.1, exact", Door::kDouble, EnvelopeOptions{.margin = 0.1, .exact = true}},
+      {"margin 0.4, exact", Door::kDouble, EnvelopeOptions{.margin = 0.4, .exact = true}},
+      {"swept", Door::kDouble, EnvelopeOptions{.swept = true}},
+      {"swept, margin 0.1", Door::kDouble, EnvelopeOptions{.margin = 0.1, .swept = true}},
+      {"stride 2", Door::kDouble, EnvelopeOptions{.stride = 2}},
+      {"stride 4", Door::kDouble, EnvelopeOptions{.stride = 4}},
+      {"stride 8", Door::kDouble, EnvelopeOptions{.stride = 8}},
+      {"stride 2, margin 0.4", Door::kDouble, EnvelopeOptions{.margin = 0.4, .stride = 2}},
+      {"stride 4, margin 0.4, queries", Door::kDouble,
+       EnvelopeOptions{.margin = 0.4, .stride = 4, .on_violation = kQuery}},
+      {"stride 2, moving margin", Door::kDouble, EnvelopeOptions{.margin_steps = 2, .stride = 2}},
+      {"stride 4, moving margin", Door::kDouble, EnvelopeOptions{.margin_steps = 6, .stride = 4}},
+      {"stride 4, moving margin, queries", Door::kDouble,
+       EnvelopeOptions{.margin_steps = 6, .stride = 4, .on_violation = kQuery}},
+      {"stride 4, moving margin, queries, exact", Door::kDouble,
+       EnvelopeOptions{.margin_steps = 6, .stride = 4, .on_violation = kQuery, .exact = true}},
+      {"stride 8, moving margin, queries", Door::kDouble,
+       EnvelopeOptions{.margin_steps = 14, .stride = 8, .on_violation = kQuery}},
+      {"float, outward, margin 0.1", Door::kFloatOutward, EnvelopeOptions{.margin = 0.1}},
+      {"float, outward, swept", Door::kFloatOutward, EnvelopeOptions{.swept = true}},
+      {"16 bits, margin 0.1", Door::kInt16, EnvelopeOptions{.margin = 0.1}},
+      {"16 bits, swept", Door::kInt16, EnvelopeOptions{.swept = true}},
+  };
+  return all;
+}
+
+const Configuration& find_configuration(std::string_view name) {
+  const auto found = std::find_if(configurations().begin(), configurations().end(),
+                                  [&](const Configuration& known) { return known.name == name; });
+  if (found == configurations().end()) throw std::invalid_argument("no configuration '" + std::string(name) + "'");
+  return *found;
+}
+
+std::string guarantee_name(Guarantee guarantee) {
+  switch (guarantee) {
+    case Guarantee::kExact:
+      return "exact";
+    case Guarantee::kSuperset:
+      return "superset only";
+    case Guarantee::kMayMiss:
+      break;
+  }
+  return "may miss";
+}
+
+Guarantee guarantee(const Configuration& configuration, accuracy::TruthKind truth, std::uint64_t violations) {
+  const EnvelopeOptions envelope = configuration.envelope.value_or(EnvelopeOptions{});
+  const bool broken = envelope.stride > 1 && envelope.on_violation == OnViolation::kReport && violations > 0;
+  if (broken) return Guarantee::kMayMiss;
+  if (truth == accuracy::TruthKind::kMotion) {
+    return envelope.swept && envelope.stride == 1 ? Guarantee::kSuperset : Guarantee::kMayMiss;
+  }
+  const bool exact = configuration.door == Door::kDouble && (!configuration.envelope || envelope.exact);
+  return exact && truth == accuracy::TruthKind::kInstants ? Guarantee::kExact : Guarantee::kSuperset;
+}
+
+}  // namespace sweepgrid::study
