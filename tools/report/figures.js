@@ -4,6 +4,7 @@ import {init, use} from "echarts/core";
 import {CustomChart, LineChart, ScatterChart} from "echarts/charts";
 import {DataZoomInsideComponent, DataZoomSliderComponent, GridComponent, LegendComponent, TooltipComponent,
   VisualMapContinuousComponent} from "echarts/components";
+import {LabelLayout} from "echarts/features";
 import {CanvasRenderer, SVGRenderer} from "echarts/renderers";
 import {element, inline} from "./dom.js";
 import {axisText, isNumber, numberText, spreadText, withUnit} from "./format.js";
@@ -13,8 +14,8 @@ import {tableElement} from "./table.js";
 import {colours, isPrinting, onThemeChange, seriesColour, swatch} from "./theme.js";
 import {spansByGroup, timelineHeight, timelineOption, timelineScale} from "./timeline.js";
 
-use([CanvasRenderer, CustomChart, DataZoomInsideComponent, DataZoomSliderComponent, GridComponent, LegendComponent,
-  LineChart, SVGRenderer, ScatterChart, TooltipComponent, VisualMapContinuousComponent]);
+use([CanvasRenderer, CustomChart, DataZoomInsideComponent, DataZoomSliderComponent, GridComponent, LabelLayout,
+  LegendComponent, LineChart, SVGRenderer, ScatterChart, TooltipComponent, VisualMapContinuousComponent]);
 
 // As many rectangles as a browser moves at ease when each is an element of the page.
 const kMostElements = 4000;

@@ -84,7 +84,31 @@ export function axisOption(chart, side) {
   };
 }
 
-function curve(one, look, chart) {
+// Points without an order are told apart by their labels. Each is where no earlier one is: beside its point, or as near
+// above or below as there is room. One for all series of a chart.
+function labelPlaces() {
+  const places = new Map();
+  const height = 12;
+  return ({seriesIndex, dataIndex, labelRect: {x, y, width}}) => {
+    const own = `${seriesIndex} ${dataIndex}`;
+    if (places.has(own)) places.clear(); // drawn anew
+    const taken = (top) => [...places.values()].some((other) => x < other.x + other.width && other.x < x + width &&
+      top < other.y + height && other.y < top + height);
+    let shift = 0;
+    for (let i = 1; i < 200 && (taken(y + shift) || y + shift < 0); ++i) shift = (i % 2 ? 1 : -1) * Math.ceil(i / 2) * 3;
+    places.set(own, {x, y: y + shift, width});
+    return {dy: shift};
+  };
+}
+
+const labelsOfPoints = ({points}, labelLayout) => ({
+  label: {show: true, color: colours().quiet, fontSize: 10,
+    formatter: ({dataIndex}) => points[dataIndex].label ?? ""},
+  labelLine: {show: true, length2: 4, lineStyle: {color: colours().line}},
+  labelLayout,
+});
+
+function curve(one, look, chart, labelLayout) {
   const many = one.points.length > 60;
   const marks = {symbol: look.symbol === undefined ? "none" : symbols[look.symbol], symbolSize: many ? 5 : 8};
   const data = one.points.map(({x, y}) =>
@@ -93,7 +117,11 @@ function curve(one, look, chart) {
     borderWidth: look.hollow ? 2 : 0};
   const common = {name: one.name, data, ...marks, itemStyle, emphasis: {scale: 1.3},
     z: one.style === "measured" ? 4 : 3};
-  if (one.style === "scatter") return {...common, type: "scatter"};
+  if (one.style === "scatter") {
+    const [low, high] = extent(chart, "x");
+    const sided = data.map((value) => ({value, label: {position: value[0] > (low + high) / 2 ? "left" : "right"}}));
+    return {...common, data: sided, type: "scatter", ...labelsOfPoints(one, labelLayout)};
+  }
   return {
     ...common,
     type: "line",
@@ -121,8 +149,9 @@ function errorBars(one, look, chart) {
 
 export function lineChartSeries(chart) {
   const looks = seriesLooks(chart.series);
+  const labelLayout = labelPlaces();
   return [
-    ...chart.series.map((one) => curve(one, looks.get(one.name), chart)),
+    ...chart.series.map((one) => curve(one, looks.get(one.name), chart, labelLayout)),
     ...chart.series.filter(({points}) => points.some(({low, high}) => isNumber(low) && isNumber(high)))
       .map((one) => errorBars(one, looks.get(one.name), chart)),
   ];

@@ -24,7 +24,7 @@ struct Point {
   double y = 0;
   std::optional<double> low = {};
   std::optional<double> high = {};
-  std::string label = {};  ///< for the tooltip, beside the numbers
+  std::string label = {};  ///< for the tooltip, beside the numbers; beside marks of kScatter
 };
 
 enum class SeriesStyle {

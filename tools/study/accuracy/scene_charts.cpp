@@ -25,7 +25,7 @@ std::vector<Series> scatter(const std::vector<AccuracyPoint>& points, const Erro
       const Spread time = cost(point);
       one.points.push_back({error(point), time.median, time.low, time.high, point.name});
     }
-    if (!one.points.empty()) series.push_back(std::move(one));
+    series.push_back(std::move(one));  // an empty one as well, so that all panels have the same colours
   }
   std::vector<Place> places;
   places.reserve(points.size());
@@ -65,7 +65,7 @@ void add_panels(const SceneResult& result, std::size_t truth, const std::string&
   const Cost step = [](const AccuracyPoint& point) { return point.step_ms; };
   const Cost total = [narrow_ns](const AccuracyPoint& point) { return point.total_ms(narrow_ns); };
   const Axis missed_axis{"true pairs that are missed", "%"};
-  const Axis step_axis{"time per step", "ms"};
+  const Axis step_axis{"time per step", "ms", true};
   charts.push_back(panel(begin + "-missed", truth_title(kind) + ": missed pairs",
                          "A point at 0 missed nothing at all. Bars: least and most of the rounds.", missed_axis,
                          step_axis, scatter(points, missed, step)));
@@ -81,7 +81,7 @@ void add_panels(const SceneResult& result, std::size_t truth, const std::string&
   }
   charts.push_back(panel(begin + "-total", truth_title(kind) + ": total with a narrow phase",
                          fmt::format("A step, and {:.4g} ns for each pair that it reports.", narrow_ns), missed_axis,
-                         {"total per step", "ms"}, std::move(totals)));
+                         {"total per step", "ms", true}, std::move(totals)));
 }
 
 // Lines for those configurations that are the cheapest somewhere among those that missed nothing, and for the exact
