@@ -89,7 +89,7 @@ std::vector<Handle> SWEEPGRID_ENGINE::insert(std::span<const Key> keys, std::spa
   try {
     if (!envelopes_) return insert(keys, boxes, ids);
     const std::vector<BoxType> envelopes = envelopes_of(boxes);
-    const std::vector<Handle> handles = insert(keys, envelopes, ids);
+    std::vector<Handle> handles = insert(keys, envelopes, ids);
     store_envelopes(handles, boxes, envelopes);
     return handles;
   } catch (...) {
