@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cmath>
-#include <cstring>
 #include <stdexcept>
 #include <string>
 
@@ -90,7 +89,7 @@ void Envelopes<Scalar, Dim>::replace(ObjectId object, const BoxType& box, double
     state |= kMoved;
     return mark(object);
   }
-  const bool rests = std::memcmp(&record.box, &box, sizeof(box)) == 0;
+  const bool rests = Objects::same_bits(record.box, box);
   if (rests && (state & kAhead) == 0) return;  // a resting object that its client reports anyway costs nothing more
   if (options_.exact && (state & kChanged) == 0) others_[object] = record.box;
   if (options_.swept) {

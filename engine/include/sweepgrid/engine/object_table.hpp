@@ -151,6 +151,21 @@ class ObjectTable {
     return records_.bytes() + states_.bytes() + marks_.bytes() + free_.capacity() * sizeof(ObjectId);
   }
 
+  /// By bits: where the host flushes denormals to zero, == would take two of them for one.
+  [[nodiscard]] static bool same_bits(const BoxType& a, const BoxType& b) {
+    constexpr std::size_t kWord = sizeof(std::uint64_t);
+    if constexpr (sizeof(BoxType) % kWord != 0) return std::memcmp(&a, &b, sizeof(a)) == 0;
+    std::uint64_t differing = 0;
+    for (std::size_t byte = 0; byte < sizeof(BoxType); byte += kWord) {
+      std::uint64_t x;
+      std::uint64_t y;
+      std::memcpy(&x, reinterpret_cast<const char*>(&a) + byte, kWord);
+      std::memcpy(&y, reinterpret_cast<const char*>(&b) + byte, kWord);
+      differing |= x ^ y;
+    }
+    return differing == 0;
+  }
+
  private:
   [[nodiscard]] bool good(Handle handle, const Record& record, std::uint8_t state) const {
     return (state & (kLive | kErased)) == kLive && record.generation == handle.generation;
@@ -190,21 +205,6 @@ class ObjectTable {
   void renew(ObjectId object) {
     records_[object].generation = first_generation_;
     records_[object].changed_at = 0;
-  }
-
-  // By bits: where the host flushes denormals to zero, == would take two of them for one.
-  static bool same_bits(const BoxType& a, const BoxType& b) {
-    constexpr std::size_t kWord = sizeof(std::uint64_t);
-    if constexpr (sizeof(BoxType) % kWord != 0) return std::memcmp(&a, &b, sizeof(a)) == 0;
-    std::uint64_t differing = 0;
-    for (std::size_t byte = 0; byte < sizeof(BoxType); byte += kWord) {
-      std::uint64_t x;
-      std::uint64_t y;
-      std::memcpy(&x, reinterpret_cast<const char*>(&a) + byte, kWord);
-      std::memcpy(&y, reinterpret_cast<const char*>(&b) + byte, kWord);
-      differing |= x ^ y;
-    }
-    return differing == 0;
   }
 
   static double width(const BoxType& box) { return Levels<Scalar, Dim>::width(box); }
