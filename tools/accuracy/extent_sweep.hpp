@@ -18,6 +18,7 @@ struct Extent {
 /// Pairs of extents that meet on `axis`. O(n log n).
 [[nodiscard]] inline std::uint64_t count_meetings(const std::vector<Extent>& extents, std::size_t axis) {
   std::vector<double> mins;
+  mins.reserve(extents.size());
   for (const Extent& extent : extents) mins.push_back(extent.box.min[axis]);
   std::sort(mins.begin(), mins.end());
   std::uint64_t count = 0;
