@@ -201,16 +201,23 @@ class Study : public testing::Test {
     return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
   }
   [[nodiscard]] std::string out() const { return "--out '" + directory_.path("") + "'"; }
+  /// What to put before the program, for a signal to reach it once a point is finished: never before it listens.
+  [[nodiscard]] std::string after_first_point(const std::string& signal) const {
+    return "sh -c '\"$@\" & program=$!; while kill -0 $program 2>/dev/null && ! grep -qs .point.: \"$0\"; do sleep "
+           "0.02; "
+           "done; " +
+           ("kill -" + signal + " $program; wait $program' '") + directory_.path("study-figures.points.jsonl") + "'";
+  }
 
   scene_files::Directory directory_;
 };
 
 TEST_F(Study, ComesToItsEndHoweverItIsStopped) {
   const std::string arguments = "--quick --figure 8 " + out();
-  const int interrupted = run(arguments, "timeout --preserve-status --signal INT 0.3");
+  const int interrupted = run(arguments, after_first_point("TERM"));
   EXPECT_TRUE(interrupted == 130 || interrupted == 0) << interrupted << said();
   EXPECT_EQ(interrupted == 130, said().find("the same command goes on") != std::string::npos) << said();
-  (void)run(arguments, "timeout --signal KILL 0.3");
+  (void)run(arguments, after_first_point("KILL"));
   EXPECT_EQ(run(arguments), 0) << said();
   EXPECT_NE(said().find("finished points are taken"), std::string::npos) << said();
   std::set<std::string> points;

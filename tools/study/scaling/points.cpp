@@ -289,6 +289,7 @@ Json ScalingBench::weak(const std::string& name, int workers) {
   Json result = {{"workers", workers}, {"objects", grown.objects}};
   if (std::binary_search(plan_.threads.begin(), plan_.threads.end(), workers)) {
     std::vector<ScalingRun> runs;
+    runs.reserve(static_cast<std::size_t>(plan_.rounds));
     for (int round = 0; round < plan_.rounds; ++round) {
       runs.push_back(run_scaling(grown, {}, make_executor(workers), nullptr));
     }

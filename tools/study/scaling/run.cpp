@@ -235,7 +235,7 @@ void apply_events(std::vector<ScenePair>& pairs, const Events<std::uint32_t>& ev
   const auto wide = [](const std::vector<Pair<std::uint32_t>>& list) {
     std::vector<ScenePair> result;
     result.reserve(list.size());
-    for (const auto& [a, b] : list) result.emplace_back(a, b);
+    for (const auto& [a, b] : list) result.push_back({a, b});
     return result;
   };
   std::vector<ScenePair> left;
