@@ -90,11 +90,14 @@ Contest play(const ContestPlan& plan) {
   const Script script = make_script(contest.scene);
   contest.pairs = script.pairs.size();
   std::vector<Player> players;
+  players.reserve(plan.systems.size());
   std::vector<std::function<double()>> turns;
+  turns.reserve(plan.systems.size());
   for (const SystemSpec& spec : plan.systems) players.emplace_back(spec, script);
   for (Player& player : players) turns.emplace_back([&] { return player.play_steps(plan.steps_per_round); });
   (void)measure_in_turn(kWarmUpRounds, turns);
   std::vector<Work> before;
+  before.reserve(players.size());
   for (const Player& player : players) before.push_back(player.work());
   const std::vector<std::vector<double>> samples = measure_in_turn(plan.rounds, turns);
   for (std::size_t i = 0; i < players.size(); ++i) {

@@ -22,6 +22,7 @@ std::string point_key(const FigurePoint& point) { return fmt::format("figure {}:
 
 std::vector<StudyPoint> study_points(const std::vector<FigurePoint>& points) {
   std::vector<StudyPoint> result;
+  result.reserve(points.size());
   for (const FigurePoint& point : points) {
     result.push_back({point_key(point), point.cost, [&point] { return to_json(play(point.plan)); }});
   }
