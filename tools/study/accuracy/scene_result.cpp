@@ -133,6 +133,7 @@ nlohmann::json scene_result_json(const SceneResult& result) {
   nlohmann::json all = nlohmann::json::array();
   for (const ConfigurationResult& one : result.configurations) all.push_back(configuration_json(one));
   std::vector<int> truths;
+  truths.reserve(result.truths.size());
   for (const TruthKind kind : result.truths) truths.push_back(static_cast<int>(kind));
   return {{"name", result.name},   {"objects", result.objects}, {"steps", result.steps},
           {"width", result.width}, {"truths", truths},          {"configurations", all}};
