@@ -8,7 +8,7 @@
 namespace sweepgrid::study {
 
 std::filesystem::path make_out_folder(const StudyOptions& options) {
-  const std::filesystem::path folder = options.out;
+  std::filesystem::path folder = options.out;
   const auto fail = [&](const std::string& reason) {
     throw std::runtime_error(fmt::format("cannot write into the folder {}: {}", folder.string(), reason));
   };
