@@ -16,8 +16,9 @@
 #include <sweepgrid/engine/engine.hpp>
 #include <sweepgrid/sap/rounding.hpp>
 
+#include "measure/in_turn.hpp"
+#include "measure/stopwatch.hpp"
 #include "scenes/open_scene.hpp"
-#include "stopwatch.hpp"
 
 namespace sweepgrid::bench {
 namespace {
@@ -61,7 +62,7 @@ Outcome play(const std::vector<Step>& steps, const Setting& setting, int threads
     std::vector<Handle> updated;
     for (const SceneKey key : step.erased) erased.push_back(handles.at(key));
     for (const SceneKey key : step.updated) updated.push_back(handles.at(key));
-    const Stopwatch watch;
+    const WallStopwatch watch;
     engine.erase(erased);
     const std::vector<Handle> inserted = engine.insert(step.inserted, steps[i].inserted_boxes);
     engine.update(updated, steps[i].updated_boxes);

@@ -15,8 +15,8 @@
 
 #include "engine_setting.hpp"
 #include "figures_file.hpp"
-#include "spread.hpp"
-#include "stopwatch.hpp"
+#include "measure/spread.hpp"
+#include "measure/stopwatch.hpp"
 #include "system.hpp"
 
 namespace sweepgrid::bench {
@@ -60,7 +60,7 @@ class Traffic {
     std::size_t boxes = 0;
     // The first turn warms up.
     for (const ScriptStep& step : script_.steps) pass(step.updated_boxes);
-    const Stopwatch stopwatch;
+    const WallStopwatch stopwatch;
     while (boxes < kBoxes) {
       for (const ScriptStep& step : script_.steps) {
         pass(step.updated_boxes);
@@ -83,7 +83,7 @@ double engine_ns_per_update(const Config<float, 3>& config, const SceneScript& s
   double seconds = 0;
   std::size_t changes = 0;
   for (const ScriptStep& step : script.steps) {
-    const Stopwatch stopwatch;
+    const WallStopwatch stopwatch;
     system.queue(step);
     system.step();
     if (&step == &script.steps.front()) continue;

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "contestants.hpp"
+#include "measure/spread.hpp"
 #include "run.hpp"
-#include "spread.hpp"
 #include "system.hpp"
 
 namespace sweepgrid::bench {

@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "cli/step_times.hpp"
-#include "stopwatch.hpp"
+#include "measure/stopwatch.hpp"
 
 namespace sweepgrid::bench {
 namespace {
@@ -25,9 +25,9 @@ struct StepTime {
 };
 
 StepTime timed(System& system, const ScriptStep& changes) {
-  const Stopwatch whole;
+  const WallStopwatch whole;
   system.queue(changes);
-  const Stopwatch step_only;
+  const WallStopwatch step_only;
   system.step();
   const double step_seconds = step_only.seconds();
   return {whole.seconds(), step_seconds};

@@ -8,11 +8,6 @@
 namespace sweepgrid::bench {
 namespace {
 
-// Exact: a float is a double.
-SceneBox widened(const FloatBox& box) {
-  return {{box.min[0], box.min[1], box.min[2]}, {box.max[0], box.max[1], box.max[2]}};
-}
-
 std::vector<ObjectPair> overlapping(const OverlapOracle& oracle) {
   std::vector<ObjectPair> pairs;
   for (const auto& [a, b] : oracle.pairs()) {
@@ -51,13 +46,7 @@ SceneTruth::SceneTruth(const SceneScript& script) : script_(script) {
 
 void SceneTruth::advance(std::size_t step, OverlapOracle& oracle) const {
   const ScriptStep& changes = step < script_.steps.size() ? script_.steps[step] : script_.removal;
-  for (const std::uint32_t object : changes.erased) oracle.erase(object);
-  for (std::size_t i = 0; i < changes.inserted.size(); ++i) {
-    oracle.insert(changes.inserted[i], widened(changes.inserted_boxes[i]));
-  }
-  for (std::size_t i = 0; i < changes.updated.size(); ++i) {
-    oracle.update(changes.updated[i], widened(changes.updated_boxes[i]));
-  }
+  oracle.apply(scene_step(changes));
 }
 
 std::string SceneTruth::complaint(std::size_t step, const std::vector<ObjectPair>& pairs) const {

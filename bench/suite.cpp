@@ -15,8 +15,8 @@
 #include "cli/cell_names.hpp"
 #include "counter_table.hpp"
 #include "engine_setting.hpp"
+#include "measure/stopwatch.hpp"
 #include "standard_scenes.hpp"
-#include "stopwatch.hpp"
 #include "system.hpp"
 
 namespace sweepgrid::bench {
@@ -37,7 +37,7 @@ class ScriptCache {
 };
 
 double timed_step(EngineSystem& system, const ScriptStep& changes) {
-  const Stopwatch stopwatch;
+  const WallStopwatch stopwatch;
   system.queue(changes);
   system.step();
   return stopwatch.seconds();

@@ -6,8 +6,8 @@
 #include "accuracy/engine_system.hpp"
 #include "baselines/peer_bullet.hpp"
 #include "baselines/peer_fcl.hpp"
-#include "baselines/peer_script.hpp"
 #include "baselines/peer_system.hpp"
+#include "scenes/scene_script.hpp"
 
 namespace sweepgrid::bench {
 
@@ -15,13 +15,9 @@ namespace sweepgrid::bench {
 using accuracy::EngineSystem;
 using baselines::EventTotals;
 using baselines::FclUpkeep;
-using baselines::FloatBox;
 using baselines::make_bullet;
 using baselines::make_fcl;
 using baselines::ObjectPair;
-using baselines::read_script;
-using baselines::SceneScript;
-using baselines::ScriptStep;
 using baselines::System;
 using baselines::SystemMaker;
 

@@ -11,8 +11,8 @@
 #include "accuracy/method_trial.hpp"
 #include "accuracy/methods.hpp"
 #include "accuracy/narrow_phase.hpp"
-#include "accuracy/processor_time.hpp"
 #include "accuracy/regimes.hpp"
+#include "measure/stopwatch.hpp"
 
 namespace sweepgrid::accuracy {
 namespace {
@@ -116,11 +116,11 @@ class WrongSystem final : public baselines::System {
   enum class Fault { kMisses, kInvents, kThrows, kHogs, kLingers };
   explicit WrongSystem(Fault fault) : fault_(fault) {}
 
-  void queue(const baselines::ScriptStep&) override {}
+  void queue(const ScriptStep&) override {}
   void step() override {
     if (fault_ == Fault::kThrows) throw std::runtime_error("out of ideas");
     while (fault_ == Fault::kHogs) hoard_.emplace_back(1 << 20, 'x');
-    const ProcessorTime time;
+    const ThreadStopwatch time;
     while (fault_ == Fault::kLingers && time.seconds() < 0.05) {
     }
   }
@@ -140,7 +140,7 @@ class WrongSystem final : public baselines::System {
 
 Trial try_fault(WrongSystem::Fault fault, const KnownScript& known, const RunBudget& budget) {
   Method method;
-  method.make = [fault](const baselines::SceneScript&) { return std::make_unique<WrongSystem>(fault); };
+  method.make = [fault](const SceneScript&) { return std::make_unique<WrongSystem>(fault); };
   return try_method(method, known, budget);
 }
 

@@ -53,7 +53,7 @@ TEST(ScalingScene, GrowsByItsNumberOfObjectsAlone) {
 
 TEST(ScalingScene, NeedsAStepThatChangesSomething) {
   EXPECT_THROW(static_cast<void>(read_scaling_scene("uniform:n=10,moving=0,churn=0", 5)), SceneError);
-  const ScalingScene scene = read_scaling_scene(kScene, 3);
+  const SceneScript scene = read_scaling_scene(kScene, 3);
   EXPECT_EQ(scene.steps.size(), 4U);
   EXPECT_EQ(scene.steps[0].inserted.size(), 3000U);
   EXPECT_EQ(scene.objects, 3000U + 3 * 30);
@@ -61,7 +61,7 @@ TEST(ScalingScene, NeedsAStepThatChangesSomething) {
 
 TEST(ScalingRun, EventsAreThoseOfTheOracleOnAnyNumberOfThreads) {
   for (const std::string& name : {kScene, kRecording, std::string("clusters:n=2000,dim=2,moving=1")}) {
-    const ScalingScene scene = read_scaling_scene(name, 6);
+    const SceneScript scene = read_scaling_scene(name, 6);
     const ScalingCheck check = check_scaling(scene);
     EXPECT_TRUE(check.ok) << name << check.error;
     EXPECT_EQ(check.steps_checked, scene.steps.size());
@@ -76,7 +76,7 @@ TEST(ScalingRun, EventsAreThoseOfTheOracleOnAnyNumberOfThreads) {
 }
 
 TEST(ScalingRun, RecordsTheWorkAsItIsCutForSoManyWorkers) {
-  const ScalingScene scene = read_scaling_scene("uniform:n=40000,moving=1,churn=0.01", 2);
+  const SceneScript scene = read_scaling_scene("uniform:n=40000,moving=1,churn=0.01", 2);
   const std::vector<WorkGraph> alone = record_work(scene, {}, 1, 2);
   const std::vector<WorkGraph> many = record_work(scene, {}, 64, 2);
   ASSERT_EQ(alone.size(), 2U);
@@ -106,7 +106,7 @@ TEST(ScalingRun, RecordsTheWorkAsItIsCutForSoManyWorkers) {
 }
 
 TEST(ScalingRun, RecordsEveryWorkersTasks) {
-  const ScalingScene scene = read_scaling_scene(kScene, 2);
+  const SceneScript scene = read_scaling_scene(kScene, 2);
   const auto recorder = std::make_shared<RecordingExecutor>(make_executor(2));
   const ScalingRun run = run_scaling(scene, {}, recorder, recorder.get());
   ASSERT_EQ(run.busy.size(), run.stages.size());
@@ -119,7 +119,7 @@ TEST(ScalingRun, RecordsEveryWorkersTasks) {
 }
 
 TEST(ScalingPrediction, OfOneWorkerIsTheWorkAndSurvivesJson) {
-  const ScalingScene scene = read_scaling_scene(kScene, 2);
+  const SceneScript scene = read_scaling_scene(kScene, 2);
   const MachineCosts costs;
   const Prediction one = predict(record_work(scene, {}, 1, 1), 1, costs, {{"drain", 0.5}});
   for (const Forecast& forecast : kForecasts) EXPECT_NEAR(one.seconds(forecast.id), one.work, 1e-9);
@@ -130,7 +130,7 @@ TEST(ScalingPrediction, OfOneWorkerIsTheWorkAndSurvivesJson) {
 }
 
 TEST(ScalingWhatIf, OtherCutsAreTheSameWork) {
-  const ScalingScene scene = read_scaling_scene("uniform:n=20000,moving=1,churn=0", 1);
+  const SceneScript scene = read_scaling_scene("uniform:n=20000,moving=1,churn=0", 1);
   std::size_t tasks_before = ~std::size_t{0};
   double work = 0;
   for (const CutVariant& variant : cut_variants(scene, 8, 1)) {

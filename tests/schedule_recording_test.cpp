@@ -45,7 +45,7 @@ TEST(RecordingExecutor, RecordsLoopsInOrderUntilStopped) {
   }
 }
 
-TEST(RecordingExecutor, ByProcessorTimeLeavesOutWhatOthersTake) {
+TEST(RecordingExecutor, ByThreadStopwatchLeavesOutWhatOthersTake) {
   const auto executor = std::make_shared<RecordingExecutor>(make_serial_executor(), 4, RecordingClock::kThread);
   const auto sleep_then_work = [](std::size_t task) {
     if (task == 0) std::this_thread::sleep_for(std::chrono::milliseconds(200));

@@ -6,8 +6,9 @@
 
 #include <gtest/gtest.h>
 
+#include "measure/in_turn.hpp"
+#include "measure/spread.hpp"
 #include "study/fit.hpp"
-#include "study/measure.hpp"
 
 namespace sweepgrid::study {
 namespace {

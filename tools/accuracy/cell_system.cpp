@@ -4,7 +4,7 @@
 
 namespace sweepgrid::accuracy {
 
-void CellSystem::queue(const baselines::ScriptStep& step) {
+void CellSystem::queue(const ScriptStep& step) {
   for (const std::uint32_t object : step.erased) ops_.push_back({object, OpKind::kErase, {}});
   for (std::size_t i = 0; i < step.inserted.size(); ++i) {
     ops_.push_back({step.inserted[i], OpKind::kInsert, OrderedBox<float, 3>(step.inserted_boxes[i])});

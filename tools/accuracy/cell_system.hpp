@@ -18,7 +18,7 @@ class CellSystem final : public baselines::System {
   explicit CellSystem(const CellOptions& options) : cell_(make_cell<float, 3>(options)) {}
 
   /// Like a cell, it does not look at what it is given: boxes must be valid, and numbers right.
-  void queue(const baselines::ScriptStep& step) override;
+  void queue(const ScriptStep& step) override;
   void step() override;
 
   [[nodiscard]] std::vector<baselines::ObjectPair> pairs() const override { return log_.pairs(); }

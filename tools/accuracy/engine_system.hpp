@@ -13,7 +13,6 @@ namespace sweepgrid::accuracy {
 
 using baselines::EventTotals;
 using baselines::ObjectPair;
-using baselines::ScriptStep;
 
 /// The engine as a client uses it: by handle, and in bulk.
 class EngineSystem final : public baselines::System {

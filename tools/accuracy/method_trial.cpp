@@ -10,14 +10,11 @@
 
 #include <nlohmann/json.hpp>
 
-#include "accuracy/processor_time.hpp"
 #include "accuracy/truth.hpp"
+#include "measure/stopwatch.hpp"
 
 namespace sweepgrid::accuracy {
 namespace {
-
-using baselines::FloatBox;
-using baselines::ScriptStep;
 
 constexpr std::array<std::pair<Verdict, std::string_view>, 8> kVerdicts = {{{Verdict::kCrash, "crash"},
                                                                             {Verdict::kError, "error"},
@@ -47,26 +44,6 @@ ScriptStep take_bad(ScriptStep& step) {
   return bad;
 }
 
-std::vector<SceneBox> widened(const std::vector<FloatBox>& boxes) {
-  std::vector<SceneBox> result;
-  result.reserve(boxes.size());
-  for (const FloatBox& box : boxes) {
-    result.emplace_back(SceneBox::Point{box.min[0], box.min[1], box.min[2]},
-                        SceneBox::Point{box.max[0], box.max[1], box.max[2]});
-  }
-  return result;
-}
-
-SceneStep scene_step(const ScriptStep& step) {
-  SceneStep result;
-  result.erased.assign(step.erased.begin(), step.erased.end());
-  result.inserted.assign(step.inserted.begin(), step.inserted.end());
-  result.updated.assign(step.updated.begin(), step.updated.end());
-  result.inserted_boxes = widened(step.inserted_boxes);
-  result.updated_boxes = widened(step.updated_boxes);
-  return result;
-}
-
 std::vector<ScenePair> sorted_pairs(const baselines::System& system) {
   std::vector<ScenePair> pairs;
   for (const auto& [a, b] : system.pairs()) pairs.push_back({std::min(a, b), std::max(a, b)});
@@ -86,7 +63,7 @@ class Play {
   Play(const Method& method, const KnownScript& known) : method_(method), known_(known) {}
 
   Trial run(double seconds) {
-    const ProcessorTime whole;
+    const ThreadStopwatch whole;
     const auto system = method_.make(known_.script);
     std::vector<double> times;
     for (std::size_t i = 0; i < known_.script.steps.size(); ++i) {
@@ -116,7 +93,7 @@ class Play {
   double step(baselines::System& system, const ScriptStep& changes) {
     ScriptStep good = changes;
     if (method_.refuses_bad_input) offer(system, take_bad(good));
-    const ProcessorTime time;
+    const ThreadStopwatch time;
     system.queue(good);
     system.step();
     return time.seconds();
@@ -174,7 +151,7 @@ Verdict verdict_of(RunEnd end) {
 
 KnownScript know_script(const std::string& scene, std::uint64_t steps) {
   KnownScript known;
-  known.script = baselines::read_script(scene, steps);
+  known.script = read_script(scene, steps);
   const auto truth = make_truth(TruthKind::kInstants, {});
   for (const ScriptStep& step : known.script.steps) {
     ScriptStep good = step;

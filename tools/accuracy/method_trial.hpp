@@ -15,7 +15,7 @@ namespace sweepgrid::accuracy {
 /// A script with the pairs of T0 after each of its steps, in the boxes that the methods get. Updates to boxes that are
 /// bad input have no part in it: their objects stay as they were.
 struct KnownScript {
-  baselines::SceneScript script;
+  SceneScript script;
   std::vector<std::vector<ScenePair>> pairs;  ///< by step
   std::uint64_t bad_boxes = 0;
 };

@@ -16,10 +16,6 @@
 namespace sweepgrid::accuracy {
 namespace {
 
-using baselines::FloatBox;
-using baselines::SceneScript;
-using baselines::ScriptStep;
-
 struct NamedKind {
   const char* name;
   CellKind kind;

@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "baselines/peer_script.hpp"
 #include "baselines/peer_system.hpp"
+#include "scenes/scene_script.hpp"
 
 namespace sweepgrid::accuracy {
 
@@ -23,7 +23,7 @@ struct Method {
   /// Boxes with a NaN or min > max are refused by queue() with std::invalid_argument.
   bool refuses_bad_input = false;
   /// A system for the objects and the world of a script. One thread.
-  std::function<std::unique_ptr<baselines::System>(const baselines::SceneScript&)> make;
+  std::function<std::unique_ptr<baselines::System>(const SceneScript&)> make;
 };
 
 /// Every kind of cell by itself ("cell/classic") and in the grid ("grid/classic"), the engine as it configures itself

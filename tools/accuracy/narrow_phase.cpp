@@ -8,8 +8,8 @@
 #include <map>
 #include <stdexcept>
 
-#include "accuracy/processor_time.hpp"
 #include "accuracy/truth.hpp"
+#include "measure/stopwatch.hpp"
 #include "scenes/open_scene.hpp"
 
 namespace sweepgrid::accuracy {
@@ -76,7 +76,7 @@ NarrowPhasePrice measure_narrow_phase(std::string_view name) {
   const PlacedPairs candidates = narrow_phase_candidates();
   std::array<double, 7> samples{};
   for (double& sample : samples) {
-    const ProcessorTime time;
+    const ThreadStopwatch time;
     if (test->second(candidates) == 0) throw std::logic_error("no candidate touches");
     sample = 1e9 * time.seconds() / static_cast<double>(candidates.size());
   }

@@ -14,7 +14,7 @@ namespace sweepgrid::accuracy {
 class OctreeSystem final : public baselines::System {
  public:
   /// Refuses bad input object by object, with std::invalid_argument.
-  void queue(const baselines::ScriptStep& step) override {
+  void queue(const ScriptStep& step) override {
     for (const std::uint32_t object : step.erased) octree_.erase(object);
     for (std::size_t i = 0; i < step.inserted.size(); ++i) octree_.insert(step.inserted[i], step.inserted_boxes[i]);
     for (std::size_t i = 0; i < step.updated.size(); ++i) octree_.update(step.updated[i], step.updated_boxes[i]);

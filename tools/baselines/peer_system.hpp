@@ -8,25 +8,13 @@
 #include <vector>
 
 #include <sweepgrid/engine/events.hpp>
-#include <sweepgrid/sap/box.hpp>
+
+#include "scenes/scene_script.hpp"
 
 namespace sweepgrid::baselines {
 
-using FloatBox = Box<float, 3>;
-
 /// Numbers of two objects, in any order.
 using ObjectPair = Pair<std::uint32_t>;
-
-/// One step of a scene, with objects numbered densely: number k is always the same object while it lives.
-struct ScriptStep {
-  std::vector<std::uint32_t> erased;
-  std::vector<std::uint32_t> inserted;
-  std::vector<FloatBox> inserted_boxes;
-  std::vector<std::uint32_t> updated;
-  std::vector<FloatBox> updated_boxes;
-
-  [[nodiscard]] std::size_t changes() const { return erased.size() + inserted.size() + updated.size(); }
-};
 
 struct EventTotals {
   std::uint64_t begins = 0;

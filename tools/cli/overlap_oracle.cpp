@@ -12,6 +12,12 @@ bool overlap_on(std::size_t axis, const SceneBox& a, const SceneBox& b) {
 
 }  // namespace
 
+void OverlapOracle::apply(const SceneStep& step) {
+  for (const SceneKey key : step.erased) erase(key);
+  for (std::size_t i = 0; i < step.inserted.size(); ++i) insert(step.inserted[i], step.inserted_boxes[i]);
+  for (std::size_t i = 0; i < step.updated.size(); ++i) update(step.updated[i], step.updated_boxes[i]);
+}
+
 std::vector<ScenePair> OverlapOracle::pairs() const {
   std::vector<std::pair<SceneBox, SceneKey>> by_x;
   by_x.reserve(boxes_.size());

@@ -15,6 +15,7 @@ class OverlapOracle {
   void insert(SceneKey key, const SceneBox& box) { boxes_[key] = box; }
   void update(SceneKey key, const SceneBox& box) { boxes_[key] = box; }
   void erase(SceneKey key) { boxes_.erase(key); }
+  void apply(const SceneStep& step);
 
   [[nodiscard]] const SceneBox& box(SceneKey key) const { return boxes_.at(key); }
   [[nodiscard]] bool contains(SceneKey key) const { return boxes_.contains(key); }

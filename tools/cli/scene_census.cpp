@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "cli/overlap_oracle.hpp"
-#include "cli/rounded_step.hpp"
+#include "scenes/rounded_step.hpp"
 
 namespace sweepgrid {
 namespace {

@@ -13,7 +13,7 @@
 
 #include "cli/machine_info.hpp"
 #include "cli/progress_bar.hpp"
-#include "cli/rounded_step.hpp"
+#include "scenes/rounded_step.hpp"
 
 namespace sweepgrid {
 namespace {

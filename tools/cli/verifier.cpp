@@ -34,7 +34,7 @@ std::vector<ScenePair> sorted(std::vector<ScenePair> pairs) {
 bool Verifier::check_step(const SceneStep& ops, const Events<SceneKey>& events) {
   if (started_) ++step_;
   started_ = true;
-  apply_ops(ops);
+  oracle_.apply(ops);
   expected_ = oracle_.pairs();
   check_list("ends", events.ends);
   check_list("begins", events.begins);
@@ -50,12 +50,6 @@ bool Verifier::check_pairs(const std::vector<ScenePair>& pairs) {
   check_list("pairs()", pairs);
   compare_with_oracle("pairs()", sorted(pairs));
   return result_.ok();
-}
-
-void Verifier::apply_ops(const SceneStep& ops) {
-  for (const SceneKey key : ops.erased) oracle_.erase(key);
-  for (std::size_t i = 0; i < ops.inserted.size(); ++i) oracle_.insert(ops.inserted[i], ops.inserted_boxes[i]);
-  for (std::size_t i = 0; i < ops.updated.size(); ++i) oracle_.update(ops.updated[i], ops.updated_boxes[i]);
 }
 
 void Verifier::check_list(std::string_view name, const std::vector<ScenePair>& list) {

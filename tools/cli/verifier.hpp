@@ -42,7 +42,6 @@ class Verifier {
   [[nodiscard]] std::size_t pair_count() const { return current_.size(); }
 
  private:
-  void apply_ops(const SceneStep& ops);
   void check_list(std::string_view name, const std::vector<ScenePair>& list);
   // What the events make of `current_`, noting what they should not hold.
   void apply_events(const SceneStep& ops, const Events<SceneKey>& events);

@@ -14,6 +14,8 @@
 #include <sweepgrid/scheduler/executor.hpp>
 #include <sweepgrid/scheduler/stage_graph.hpp>
 
+#include "measure/stopwatch.hpp"
+
 namespace sweepgrid::study {
 namespace {
 

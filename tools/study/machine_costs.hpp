@@ -4,7 +4,7 @@
 
 #include <sweepgrid/scheduler/schedule_simulator.hpp>
 
-#include "study/measure.hpp"
+#include "measure/spread.hpp"
 
 namespace sweepgrid::study {
 

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "study/measure.hpp"
+#include "measure/stopwatch.hpp"
 #include "study/study_progress.hpp"
 
 namespace sweepgrid::study {

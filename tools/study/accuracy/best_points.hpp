@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "measure/spread.hpp"
 #include "study/accuracy/scene_result.hpp"
-#include "study/measure.hpp"
 
 namespace sweepgrid::study {
 

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <unordered_map>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "scenes/open_scene.hpp"
 #include "scenes/scene_error.hpp"
+#include "scenes/scene_numbering.hpp"
 
 namespace sweepgrid::study {
 namespace {
@@ -43,10 +43,10 @@ class Reader {
       check(ops.updated, ops.updated_boxes, k);
       if (k == 0) scene_.width = width_of(ops.inserted_boxes);
       for (std::size_t i = 0; i < truths_.size(); ++i) scene_.truths[i].pairs.push_back(truths_[i]->step(ops));
-      scene_.steps.push_back({numbers(ops.erased), numbers(ops.inserted), ops.inserted, ops.inserted_boxes,
-                              numbers(ops.updated), ops.updated_boxes});
+      scene_.steps.push_back({numbering_.numbers(ops.erased), numbering_.numbers(ops.inserted), ops.inserted,
+                              ops.inserted_boxes, numbering_.numbers(ops.updated), ops.updated_boxes});
     }
-    scene_.objects = static_cast<std::uint32_t>(numbers_.size());
+    scene_.objects = numbering_.size();
     if (scene_.steps.size() < 2) throw SceneError(fmt::format("{}: there is no step after the start", scene_.name));
     return std::move(scene_);
   }
@@ -82,18 +82,9 @@ class Reader {
     return *middle;
   }
 
-  std::vector<std::uint32_t> numbers(const std::vector<SceneKey>& keys) {
-    std::vector<std::uint32_t> result;
-    result.reserve(keys.size());
-    for (const SceneKey key : keys) {
-      result.push_back(numbers_.try_emplace(key, static_cast<std::uint32_t>(numbers_.size())).first->second);
-    }
-    return result;
-  }
-
   std::unique_ptr<SceneSource> source_;
   std::vector<std::unique_ptr<accuracy::Truth>> truths_;
-  std::unordered_map<SceneKey, std::uint32_t> numbers_;
+  SceneNumbering numbering_;
   bool empty_ = true;  // no box has been seen
   KnownScene scene_;
 };

@@ -7,8 +7,8 @@
 #include <sweepgrid/sap/quantizer.hpp>
 #include <sweepgrid/sap/rounding.hpp>
 
-#include "cli/rounded_step.hpp"
-#include "study/measure.hpp"
+#include "measure/stopwatch.hpp"
+#include "scenes/rounded_step.hpp"
 
 namespace sweepgrid::study {
 namespace {

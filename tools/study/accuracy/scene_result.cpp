@@ -5,8 +5,8 @@
 #include <fmt/format.h>
 
 #include "accuracy/accuracy_json.hpp"
+#include "measure/in_turn.hpp"
 #include "study/accuracy/play.hpp"
-#include "study/measure.hpp"
 
 namespace sweepgrid::study {
 namespace {

@@ -8,7 +8,8 @@
 
 #include <fmt/format.h>
 
-#include "study/measure.hpp"
+#include "measure/in_turn.hpp"
+#include "measure/stopwatch.hpp"
 
 namespace sweepgrid::study {
 namespace {

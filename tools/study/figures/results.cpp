@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "measure/in_turn.hpp"
+
 namespace sweepgrid::study {
 
 std::vector<std::string> Results::systems(const std::string& figure) const {

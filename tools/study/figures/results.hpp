@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "measure/spread.hpp"
 #include "study/figures/contest.hpp"
 #include "study/fit.hpp"
-#include "study/measure.hpp"
 
 namespace sweepgrid::study {
 

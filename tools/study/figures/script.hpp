@@ -4,21 +4,11 @@
 #include <string>
 #include <vector>
 
-#include <sweepgrid/sap/box.hpp>
 #include <sweepgrid/sap/ids.hpp>
 
+#include "scenes/scene_script.hpp"
+
 namespace sweepgrid::study {
-
-using FloatBox = Box<float, 3>;
-
-/// One step of a scene in the precision of the systems. An object's number is its key: no number comes back.
-struct ScriptStep {
-  std::vector<std::uint32_t> erased;
-  std::vector<std::uint32_t> inserted;
-  std::vector<FloatBox> inserted_boxes;
-  std::vector<std::uint32_t> updated;
-  std::vector<FloatBox> updated_boxes;
-};
 
 /// A generated scene, read to its end before anything is timed.
 struct Script {

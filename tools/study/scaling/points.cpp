@@ -158,8 +158,8 @@ std::vector<int> ScalingPlan::weak_workers(const std::string& scene) const {
   return tidy(std::move(result));
 }
 
-const ScalingScene& ScalingBench::scene(const std::string& name) {
-  if (scene_.name != name) scene_ = read_scaling_scene(name, plan_.steps);
+const SceneScript& ScalingBench::scene(const std::string& name) {
+  if (scene_.scene != name) scene_ = read_scaling_scene(name, plan_.steps);
   return scene_;
 }
 
@@ -192,7 +192,7 @@ Json ScalingBench::memory_shares(const std::string& name) {
 
 // Runs with every number of threads, and recorded ones that are cut for them, take turns.
 Json ScalingBench::measured(const std::string& name) {
-  const ScalingScene& played = scene(name);
+  const SceneScript& played = scene(name);
   std::map<int, std::vector<ScalingRun>> runs;
   std::map<int, std::vector<WorkGraph>> work;    // by one thread that passes for so many
   std::map<int, std::vector<WorkGraph>> as_ran;  // by as many threads
@@ -285,7 +285,7 @@ Json ScalingBench::timeline(const std::string& name) {
 }
 
 Json ScalingBench::weak(const std::string& name, int workers) {
-  const ScalingScene grown = read_scaling_scene(grown_scene(name, static_cast<std::uint64_t>(workers)), plan_.steps);
+  const SceneScript grown = read_scaling_scene(grown_scene(name, static_cast<std::uint64_t>(workers)), plan_.steps);
   Json result = {{"workers", workers}, {"objects", grown.objects}};
   if (std::binary_search(plan_.threads.begin(), plan_.threads.end(), workers)) {
     std::vector<ScalingRun> runs;

@@ -63,7 +63,7 @@ class ScalingBench {
     Schedule schedule;
   };
   [[nodiscard]] Timed timed_step(const std::string& scene, int workers);
-  [[nodiscard]] const ScalingScene& scene(const std::string& name);
+  [[nodiscard]] const SceneScript& scene(const std::string& name);
 
  private:
   [[nodiscard]] nlohmann::json memory_shares(const std::string& scene);
@@ -78,7 +78,7 @@ class ScalingBench {
 
   ScalingPlan plan_;
   const PointStore& store_;
-  ScalingScene scene_;
+  SceneScript scene_;
 };
 
 }  // namespace sweepgrid::study

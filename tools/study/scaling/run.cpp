@@ -12,7 +12,7 @@
 #include <sweepgrid/engine/engine.hpp>
 
 #include "cli/overlap_oracle.hpp"
-#include "study/measure.hpp"
+#include "measure/stopwatch.hpp"
 
 namespace sweepgrid::study {
 namespace {
@@ -118,7 +118,7 @@ class EngineRun {
   using BoxType = Box<float, Dim>;
   using EngineType = Engine<float, Dim, std::uint32_t>;
 
-  EngineRun(const ScalingScene& scene, const ScalingSettings& settings, const std::shared_ptr<Executor>& executor,
+  EngineRun(const SceneScript& scene, const ScalingSettings& settings, const std::shared_ptr<Executor>& executor,
             RecordingExecutor* recorder)
       : recorder_(recorder), engine_(config(settings, executor)), handles_(scene.objects) {
     run_.stages = engine_.stage_names();
@@ -130,7 +130,7 @@ class EngineRun {
 
   // `after(events)` is called after every step.
   template <class After>
-  ScalingRun run(const ScalingScene& scene, After&& after) {
+  ScalingRun run(const SceneScript& scene, After&& after) {
     for (std::size_t step = 0; step < scene.steps.size(); ++step) {
       do_step(scene.steps[step], step == 0);
       const auto& events = *events_;
@@ -151,7 +151,7 @@ class EngineRun {
     return config;
   }
 
-  void do_step(const ScalingStep& step, bool start) {
+  void do_step(const ScriptStep& step, bool start) {
     std::vector<Handle> erased;
     std::vector<Handle> updated;
     erased.reserve(step.erased.size());
@@ -224,9 +224,9 @@ class EngineRun {
 };
 
 template <class After>
-ScalingRun run_with(const ScalingScene& scene, const ScalingSettings& settings,
+ScalingRun run_with(const SceneScript& scene, const ScalingSettings& settings,
                     const std::shared_ptr<Executor>& executor, RecordingExecutor* recorder, After&& after) {
-  if (scene.dim == 2) return EngineRun<2>(scene, settings, executor, recorder).run(scene, after);
+  if (scene.info.dim == 2) return EngineRun<2>(scene, settings, executor, recorder).run(scene, after);
   return EngineRun<3>(scene, settings, executor, recorder).run(scene, after);
 }
 
@@ -260,13 +260,6 @@ std::vector<std::vector<double>> least_parts(const std::vector<ScalingRun>& runs
   return least;
 }
 
-SceneBox scene_box(const Box<float, 3>& box) {
-  SceneBox result;
-  std::copy(box.min.begin(), box.min.end(), result.min.begin());
-  std::copy(box.max.begin(), box.max.end(), result.max.begin());
-  return result;
-}
-
 }  // namespace
 
 std::vector<double> ScalingTimes::parts() const {
@@ -280,12 +273,12 @@ std::vector<double> ScalingTimes::parts() const {
   return parts;
 }
 
-ScalingRun run_scaling(const ScalingScene& scene, const ScalingSettings& settings,
+ScalingRun run_scaling(const SceneScript& scene, const ScalingSettings& settings,
                        const std::shared_ptr<Executor>& executor, RecordingExecutor* recorder) {
-  return run_with(scene, settings, executor, recorder, [](const ScalingStep&, const auto&) {});
+  return run_with(scene, settings, executor, recorder, [](const ScriptStep&, const auto&) {});
 }
 
-std::vector<WorkGraph> record_work(const ScalingScene& scene, const ScalingSettings& settings, int workers, int runs) {
+std::vector<WorkGraph> record_work(const SceneScript& scene, const ScalingSettings& settings, int workers, int runs) {
   std::vector<WorkGraph> least;
   for (int run = 0; run < runs; ++run) {
     const auto recorder = std::make_shared<RecordingExecutor>(make_serial_executor(), workers, RecordingClock::kThread);
@@ -336,16 +329,13 @@ std::vector<double> least_part_seconds(const std::vector<ScalingRun>& runs) {
   return seconds;
 }
 
-ScalingCheck check_scaling(const ScalingScene& scene) {
+ScalingCheck check_scaling(const SceneScript& scene) {
   ScalingCheck check;
   OverlapOracle oracle;
   std::vector<ScenePair> pairs;
   std::size_t step = 0;
-  const auto after = [&](const ScalingStep& ops, const Events<std::uint32_t>& events) {
-    for (const std::uint32_t object : ops.erased) oracle.erase(object);
-    for (std::size_t i = 0; i < ops.inserted.size(); ++i)
-      oracle.insert(ops.inserted[i], scene_box(ops.inserted_boxes[i]));
-    for (std::size_t i = 0; i < ops.updated.size(); ++i) oracle.update(ops.updated[i], scene_box(ops.updated_boxes[i]));
+  const auto after = [&](const ScriptStep& ops, const Events<std::uint32_t>& events) {
+    oracle.apply(scene_step(ops));
     apply_events(pairs, events);
     const bool due = scene.objects <= kOftenChecked || step == 0 || step + 1 == scene.steps.size();
     if (due && check.ok) {

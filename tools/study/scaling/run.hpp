@@ -51,13 +51,13 @@ struct ScalingRun {
 };
 
 /// Runs the engine over `scene`. With `recorder`, which then is the engine's executor, tasks are recorded.
-[[nodiscard]] ScalingRun run_scaling(const ScalingScene& scene, const ScalingSettings& settings,
+[[nodiscard]] ScalingRun run_scaling(const SceneScript& scene, const ScalingSettings& settings,
                                      const std::shared_ptr<Executor>& executor, RecordingExecutor* recorder);
 
 /// The work of every step after the start when it is cut for `workers` workers, done by the calling thread alone, in
 /// its processor time: of `runs` runs the least of each task and serial part, for what disturbs only adds.
-[[nodiscard]] std::vector<WorkGraph> record_work(const ScalingScene& scene, const ScalingSettings& settings,
-                                                 int workers, int runs);
+[[nodiscard]] std::vector<WorkGraph> record_work(const SceneScript& scene, const ScalingSettings& settings, int workers,
+                                                 int runs);
 
 /// Makes each of `least` the lesser of itself and `other`. Throws std::runtime_error when the two have not the same
 /// tasks: what an engine does must not depend on time.
@@ -78,6 +78,6 @@ struct ScalingCheck {
 
 /// Runs the engine on one thread and compares the pairs that its events lead to with those that a sort and a sweep find
 /// in the boxes: after every step, or where that would take too long (above 2e5 objects) after the start and the last.
-[[nodiscard]] ScalingCheck check_scaling(const ScalingScene& scene);
+[[nodiscard]] ScalingCheck check_scaling(const SceneScript& scene);
 
 }  // namespace sweepgrid::study

@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "measure/in_turn.hpp"
+
 namespace sweepgrid::study {
 namespace {
 

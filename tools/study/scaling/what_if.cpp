@@ -39,7 +39,7 @@ std::vector<WorkGraph> with_gather_of(std::vector<WorkGraph> steps, const std::v
 
 }  // namespace
 
-std::vector<CutVariant> cut_variants(const ScalingScene& scene, int workers, int runs) {
+std::vector<CutVariant> cut_variants(const SceneScript& scene, int workers, int runs) {
   std::map<int, std::vector<WorkGraph>> cut_for;
   for (const int cut : {workers / 4, workers / 2, workers, 2 * workers, 4 * workers}) {
     if (cut >= 1) cut_for[cut] = record_work(scene, {}, cut, runs);

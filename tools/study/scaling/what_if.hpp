@@ -19,6 +19,6 @@ struct CutVariant {
 /// Grain: tasks of all stages as they are cut for a half and a quarter of the workers' share each (1/2, 1/4), as they
 /// are, and 2, 4 and 8 neighbours as one. Shards: the tasks and plan of the stage `gather`, of which there is one for
 /// each shard, as they are for 1/4 to 4 times as many workers; all else stays.
-[[nodiscard]] std::vector<CutVariant> cut_variants(const ScalingScene& scene, int workers, int runs);
+[[nodiscard]] std::vector<CutVariant> cut_variants(const SceneScript& scene, int workers, int runs);
 
 }  // namespace sweepgrid::study

@@ -21,6 +21,17 @@ template <class Scalar, int Dim>
   return result;
 }
 
+/// The same numbers in double, exactly. Axes that `box` has not are [0, 0].
+template <class Scalar, int Dim>
+[[nodiscard]] SceneBox widen_box(const Box<Scalar, Dim>& box) {
+  SceneBox result{};
+  for (std::size_t axis = 0; axis < static_cast<std::size_t>(Dim); ++axis) {
+    result.min[axis] = box.min[axis];
+    result.max[axis] = box.max[axis];
+  }
+  return result;
+}
+
 /// Rounds `boxes` to `rounded`, for the engine, and in place, so that both hold the same numbers.
 template <class Scalar, int Dim>
 void round_boxes(std::vector<SceneBox>& boxes, std::vector<Box<Scalar, Dim>>& rounded) {
