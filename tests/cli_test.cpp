@@ -316,6 +316,60 @@ TEST_F(Program, VerifiesARecordingAndTellsAllInJson) {
   EXPECT_EQ(scene["counters"]["begins"].get<int>() - scene["counters"]["ends"].get<int>(), scene["pairs"]["last"]);
 }
 
+TEST_F(Program, TakesASetupFromAFileAndVerifiesWhatItPromises) {
+  const std::string scenes = "uniform:n=300,steps=6,moving=1,density=0.2 uniform:n=300,steps=6,dim=2,density=0.2";
+  const auto verified = [&](const std::string& setup) {
+    const std::string file = directory_.write("setup.json", setup);
+    const Result result = run("run --verify --json - --config '" + file + "' " + scenes);
+    EXPECT_EQ(result.status, 0) << setup << result.err;
+    return nlohmann::json::parse(result.out).at("scenes").at(0).at("verification");
+  };
+  EXPECT_EQ(verified(R"({"scalar": "double"})").at("promised"), "exact");
+  EXPECT_EQ(verified(R"({"scalar": "double", "config": {"cell_population": 2, "threads": 2}})").at("extra"), 0);
+  for (const char* setup : {R"({"scalar": "float", "rounding": "outward", "axes": [0, 1], "tune": {"any": "thing"}})",
+                            R"({"scalar": "double", "config": {"envelope": {"margin": 0.5}}})",
+                            R"({"scalar": "float", "config": {"envelope": {"swept": true}}})",
+                            R"({"config": {"envelope": {"stride": 3, "margin": 0.2, "on_violation": "query"}}})",
+                            R"({"scalar": "int16", "quantizer": {"origin": [5, 5, 0], "resolution": 0.125}})"}) {
+    const nlohmann::json found = verified(setup);
+    EXPECT_EQ(found.at("promised"), "superset only") << setup;
+    EXPECT_EQ(found.at("missing"), 0) << setup;
+    EXPECT_GT(found.at("extra"), 0) << setup;
+  }
+  const nlohmann::json may_miss = verified(R"({"scalar": "double", "config": {"envelope": {"stride": 3}}})");
+  EXPECT_EQ(may_miss.at("promised"), "may miss");
+  EXPECT_GT(may_miss.at("missing"), 0);
+}
+
+TEST_F(Program, RefusesASetupThatIsNoneAndNamesWhy) {
+  const std::pair<std::string, std::string> cases[] = {
+      {"{", "setup.json: "},
+      {"[]", "setup is [], not an object"},
+      {R"({"schema": "sweepgrid-run"})", "setup::schema is \"sweepgrid-run\""},
+      {R"({"schema_version": 2})", "setup::schema_version is 2, but must be 1"},
+      {R"({"scalars": "float"})", "setup has no member 'scalars'"},
+      {R"({"scalar": "half"})", "setup::scalar is \"half\""},
+      {R"({"scalar": "double", "rounding": "outward"})", "setup::rounding is \"outward\", but must be \"none\""},
+      {R"({"axes": [0, 0]})", "setup::axes is [0,0]"},
+      {R"({"axes": [2]})", "setup::axes is [2]"},
+      {R"({"scalar": "int16"})", "setup::quantizer"},
+      {R"({"scalar": "float", "quantizer": {}})", "setup::quantizer"},
+      {R"({"scalar": "int32", "quantizer": {"resolution": 0}})", "quantizer::resolution is 0"},
+      {R"({"scalar": "int32", "quantizer": {"origin": [1, 2]}})", "quantizer::origin is [1,2]"},
+      {R"({"scalar": "int32", "quantizer": {"step": 1}})", "quantizer has no member 'step'"},
+      {R"({"config": {"threads": -1}})", "Config::threads is -1"},
+  };
+  for (const auto& [setup, reason] : cases) {
+    const Result result = run("run uniform:n=10 --config '" + directory_.write("setup.json", setup) + "'");
+    EXPECT_EQ(result.status, 2) << setup;
+    EXPECT_NE(result.err.find(reason), std::string::npos) << setup << "\n" << result.err;
+  }
+  EXPECT_NE(run("run uniform:n=10 --config /absent.json").err.find("cannot read /absent.json"), std::string::npos);
+  const Result both = run("run uniform:n=10 --cell rows --config '" + directory_.write("setup.json", "{}") + "'");
+  EXPECT_EQ(both.status, 2) << "told twice";
+  EXPECT_EQ(run("run uniform:n=10 --threads 2 --config '" + directory_.path("setup.json") + "'").status, 0);
+}
+
 TEST_F(Program, DescribesScenes) {
   const Result result = run("info '" + std::string(SWEEPGRID_RECORDINGS) + "/bullet_towers_4000.aabbs.xz'");
   EXPECT_EQ(result.status, 0);

@@ -3,31 +3,22 @@
 #include <map>
 #include <string>
 
-#include <sweepgrid/engine/config.hpp>
-#include <sweepgrid/sap/cell_kind.hpp>
+#include <sweepgrid/engine/config_json.hpp>
 
 namespace sweepgrid {
 
-/// The kinds of cell as the command line calls them.
-[[nodiscard]] inline std::map<std::string, CellKind> cell_kinds_by_name() {
-  return {{"auto", CellKind::kAuto},           {"rows", CellKind::kRows},       {"batch", CellKind::kBatch},
-          {"segmented", CellKind::kSegmented}, {"classic", CellKind::kClassic}, {"plane", CellKind::kPlane}};
+/// The values of a setting as the command line calls them, which is as JSON does.
+template <class Enum>
+[[nodiscard]] std::map<std::string, Enum> by_name() {
+  return {json_names(Enum{}).begin(), json_names(Enum{}).end()};
 }
 
-[[nodiscard]] inline std::string cell_name(CellKind kind) {
-  for (const auto& [name, candidate] : cell_kinds_by_name()) {
-    if (candidate == kind) return name;
-  }
-  return "?";
-}
+/// The kinds of cell.
+[[nodiscard]] inline std::map<std::string, CellKind> cell_kinds_by_name() { return by_name<CellKind>(); }
+[[nodiscard]] inline std::string cell_name(CellKind kind) { return json_members::name_of(kind); }
 
-/// The ways from deltas to events as the command line calls them.
-[[nodiscard]] inline std::map<std::string, Reduction> reductions_by_name() {
-  return {{"reporter", Reduction::kSingleReporter}, {"counts", Reduction::kWitnessCounts}};
-}
-
-[[nodiscard]] inline std::string reduction_name(Reduction reduction) {
-  return reduction == Reduction::kWitnessCounts ? "counts" : "reporter";
-}
+/// The ways from deltas to events.
+[[nodiscard]] inline std::map<std::string, Reduction> reductions_by_name() { return by_name<Reduction>(); }
+[[nodiscard]] inline std::string reduction_name(Reduction reduction) { return json_members::name_of(reduction); }
 
 }  // namespace sweepgrid

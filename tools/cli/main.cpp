@@ -20,6 +20,7 @@
 #include "cli/run_command.hpp"
 #include "cli/study_command.hpp"
 #include "scenes/generator_params.hpp"
+#include "setup/setup_json.hpp"
 #include "study/study_options.hpp"
 
 namespace sweepgrid {
@@ -91,6 +92,9 @@ CLI::App* add_run(CLI::App& app, RunOptions& options, RunTexts& texts) {
   add_scene_options(*run, options);
   run->add_option("--threads", options.threads, "Workers; 0 (default): all cores, 1: none but the caller")
       ->check(CLI::NonNegativeNumber);
+  CLI::Option* config =
+      run->add_option("--config", options.config_path, "Take the setup from FILE, such as `sweepgrid tune` writes it")
+          ->type_name("FILE");
   run->add_option("--cell", texts.cell, "Kind of the cells: auto|rows|segmented|batch|classic|plane (default: auto)")
       ->check(CLI::IsMember({"auto", "rows", "segmented", "batch", "classic", "plane"}).description(""));
   run->add_option("--cell-size", texts.cell_size,
@@ -104,6 +108,11 @@ CLI::App* add_run(CLI::App& app, RunOptions& options, RunTexts& texts) {
   run->add_option("--reduction", options.reduction,
                   "How deltas become events: reporter (default; one cell reports each) or counts (of witnesses)")
       ->transform(CLI::CheckedTransformer(reductions_by_name()).description("reporter|counts"));
+  // What the file tells is not to be told twice; but --threads wins over it.
+  for (const char* told :
+       {"--scalar", "--cell", "--cell-size", "--cell-population", "--segment-capacity", "--reduction"}) {
+    config->excludes(run->get_option(told));
+  }
   run->add_option("--events", options.events_path, kEventsHelp)->type_name("FILE");
   run->add_option("--json", options.json_path, "Write all results to FILE (see tools/README.md); - is stdout")
       ->type_name("FILE");
@@ -152,7 +161,10 @@ int run_main(int argc, char** argv) {
   }
   if (study.parsed()) return study.run() ? kWell : kNotVerified;
   check_scenes(run->parsed() ? run_options.scenes : info_options.scenes);
-  if (run->parsed()) return run_command(run_options) ? kWell : kNotVerified;
+  if (run->parsed()) {
+    if (!run_options.config_path.empty()) run_options.setup = read_setup(run_options.config_path);
+    return run_command(run_options) ? kWell : kNotVerified;
+  }
   info_command(info_options);
   return kWell;
 }

@@ -16,7 +16,7 @@
 namespace sweepgrid {
 
 bool run_command(const RunOptions& options) {
-  const std::shared_ptr<Executor> executor = make_executor(options.threads);
+  const std::shared_ptr<Executor> executor = make_executor(options.thread_count());
   // Opened before the work, so that a path that cannot be written to costs none.
   std::optional<EventsFile> events;
   if (!options.events_path.empty()) events.emplace(options.events_path, options.scenes.size());

@@ -6,6 +6,7 @@
 
 #include "cli/cell_names.hpp"
 #include "cli/provenance_json.hpp"
+#include "setup/setup_json.hpp"
 
 namespace sweepgrid {
 namespace {
@@ -20,14 +21,18 @@ Json optional_json(const std::optional<T>& value) {
 }
 
 Json settings_json(const RunOptions& options, int workers) {
-  return {{"threads", options.threads},
+  const EngineSetup setup = setup_of(options);
+  const Config<double, 3>& config = setup.config;
+  return {{"threads", options.thread_count()},
           {"workers", workers},
-          {"cell", options.cell ? cell_name(*options.cell) : "auto"},
-          {"cell_size", options.cell_size ? Json(*options.cell_size) : Json("auto")},
-          {"cell_population", options.cell_population ? Json(*options.cell_population) : Json("auto")},
-          {"segment_capacity", optional_json(options.segment_capacity)},
-          {"reduction", reduction_name(options.reduction.value_or(Reduction::kSingleReporter))},
-          {"scalar", options.scalar == ScalarKind::kFloat ? "float" : "double"},
+          {"cell", cell_name(config.cell.kind)},
+          {"cell_size", config.cell_size ? Json(*config.cell_size) : Json("auto")},
+          {"cell_population", config.cell_population ? Json(*config.cell_population) : Json("auto")},
+          {"segment_capacity",
+           options.setup ? Json(config.cell.segment_capacity) : optional_json(options.segment_capacity)},
+          {"reduction", reduction_name(config.reduction)},
+          {"scalar", scalar_name(setup.treatment.door)},
+          {"config", options.setup ? setup_json(setup) : Json(nullptr)},
           {"steps", optional_json(options.steps)},
           {"diameter", optional_json(options.scene.diameter)},
           {"verify", options.verify}};
@@ -78,6 +83,7 @@ Json counters_json(const StepCounters& counters) {
 Json verification_json(const std::optional<Verification>& verification) {
   if (!verification) return nullptr;
   return {{"ok", verification->ok()},
+          {"promised", guarantee_name(verification->promised)},
           {"steps", verification->steps},
           {"pairs", verification->pairs},
           {"missing", verification->missing},

@@ -9,6 +9,7 @@
 #include <sweepgrid/sap/cell_kind.hpp>
 
 #include "scenes/open_scene.hpp"
+#include "setup/engine_setup.hpp"
 
 namespace sweepgrid {
 
@@ -18,7 +19,9 @@ enum class ScalarKind { kFloat, kDouble };
 struct RunOptions {
   std::vector<std::string> scenes;
   SceneOptions scene;
-  int threads = 0;
+  std::optional<int> threads;        ///< wins over those of `setup`; absent from both: all cores
+  std::string config_path;           ///< of `setup`; empty: none
+  std::optional<EngineSetup> setup;  ///< goes with none of the next six
   std::optional<CellKind> cell;
   std::optional<double> cell_size;
   std::optional<int> cell_population;
@@ -29,6 +32,11 @@ struct RunOptions {
   std::string events_path;             ///< empty: none
   std::string json_path;               ///< empty: none
   bool verify = false;
+
+  [[nodiscard]] int thread_count() const { return threads.value_or(setup ? setup->config.threads : 0); }
 };
+
+/// The setup that was asked for, by the file or by the other options.
+[[nodiscard]] EngineSetup setup_of(const RunOptions& options);
 
 }  // namespace sweepgrid

@@ -65,7 +65,8 @@ std::string verification_text(const Verification& found) {
   const std::string counts =
       fmt::format("{} steps, {} pairs, {} missing, {} extra, {} duplicate, {} spurious", found.steps, found.pairs,
                   found.missing, found.extra, found.duplicate, found.spurious);
-  if (found.ok()) return "verified: " + counts;
+  const bool exact = found.promised == Guarantee::kExact;
+  if (found.ok()) return "verified: " + counts + (exact ? "" : " (" + guarantee_name(found.promised) + ")");
   return fmt::format("NOT verified: {}, {} misordered\n  {}", counts, found.misordered, found.first_error);
 }
 

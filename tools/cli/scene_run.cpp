@@ -2,18 +2,17 @@
 
 #include <chrono>
 #include <limits>
-#include <span>
 #include <string>
 #include <unordered_map>
 
 #include <fmt/format.h>
 
-#include <sweepgrid/engine/engine.hpp>
 #include <sweepgrid/sap/invariant.hpp>
 
 #include "cli/machine_info.hpp"
 #include "cli/progress_bar.hpp"
-#include "scenes/rounded_step.hpp"
+#include "setup/guarantee.hpp"
+#include "setup/scene_engine.hpp"
 
 namespace sweepgrid {
 namespace {
@@ -24,41 +23,31 @@ constexpr std::uint64_t kStepsPerPairsCheck = 10;
 
 double milliseconds(Clock::duration duration) { return std::chrono::duration<double, std::milli>(duration).count(); }
 
-template <class Scalar, int Dim>
-Config<Scalar, Dim> config_of(const RunOptions& options, const std::shared_ptr<Executor>& executor) {
-  Config<Scalar, Dim> config;
-  if (options.cell) config.cell.kind = *options.cell;
-  if (options.segment_capacity) config.cell.segment_capacity = *options.segment_capacity;
-  config.cell_size = options.cell_size;
-  config.cell_population = options.cell_population;
-  if (options.reduction) config.reduction = *options.reduction;
-  config.executor = executor;
-  return config;
-}
-
 /// One engine on its way through one scene.
-template <class Scalar, int Dim>
 class SceneRun {
  public:
-  SceneRun(const RunOptions& options, const std::shared_ptr<Executor>& executor, EventsFile* events)
-      : engine_(config_of<Scalar, Dim>(options, executor)), events_file_(events) {
+  SceneRun(const SceneInfo& scene, const RunOptions& options, const std::shared_ptr<Executor>& executor,
+           EventsFile* events)
+      : scene_(scene), setup_(setup_of(options)), own_boxes_(!options.setup), events_file_(events) {
+    setup_.config.executor = executor;
+    engine_ = make_scene_engine(setup_, scene.dim);
     if (options.verify) verifier_.emplace();
   }
 
   SceneResult run(SceneSource& source, std::uint64_t step_limit) {
-    result_.scene = source.info();
+    result_.scene = scene_;
     ProgressBar progress(result_.scene.name, result_.scene.steps);
     SceneStep ops;
     bool right = source.next(ops) && try_step(ops);
-    result_.objects_first = engine_.size();
+    result_.objects_first = engine_->size();
     while (right && result_.steps < step_limit && source.next(ops)) {
       ++result_.steps;
       right = try_step(ops);
       progress.show(result_.steps);
     }
-    if (right && verifier_) verifier_->check_pairs(engine_.pairs());
-    result_.objects_last = engine_.size();
-    result_.stats = engine_.stats();
+    if (right && verifier_) verifier_->check_pairs(engine_->pairs());
+    result_.objects_last = engine_->size();
+    result_.stats = engine_->stats();
     result_.peak_bytes = peak_memory();
     if (verifier_) result_.verification = verifier_->result();
     if (!broken_.empty()) {
@@ -82,12 +71,9 @@ class SceneRun {
   bool do_step(SceneStep& ops) {
     prepare(ops);
     const Clock::time_point begin = Clock::now();
-    engine_.erase(std::span<const Handle>(erased_));
-    std::vector<Handle> inserted =
-        engine_.insert(std::span<const SceneKey>(ops.inserted), std::span<const Box<Scalar, Dim>>(inserted_boxes_));
-    engine_.update(std::span<const Handle>(updated_), std::span<const Box<Scalar, Dim>>(updated_boxes_));
+    const std::vector<Handle> inserted = engine_->queue(erased_, ops.inserted, updated_);
     const Clock::time_point queued = Clock::now();
-    const Events<SceneKey>& events = engine_.step();
+    const Events<SceneKey>& events = engine_->step();
     const Clock::time_point end = Clock::now();
     for (std::size_t i = 0; i < inserted.size(); ++i) handles_[ops.inserted[i]] = inserted[i];
     count(ops, events, milliseconds(end - begin), milliseconds(end - queued));
@@ -105,8 +91,10 @@ class SceneRun {
       handles_.erase(handle);
     }
     for (const SceneKey key : ops.updated) updated_.push_back(handles_.find(key)->second);
-    round_boxes(ops.inserted_boxes, inserted_boxes_);
-    round_boxes(ops.updated_boxes, updated_boxes_);
+    engine_->convert(ops.inserted_boxes, ops.updated_boxes);
+    if (!verifier_ || !own_boxes_) return;
+    engine_->as_taken(ops.inserted_boxes);
+    engine_->as_taken(ops.updated_boxes);
   }
 
   void count(const SceneStep& ops, const Events<SceneKey>& events, double whole_ms, double step_ms) {
@@ -125,7 +113,7 @@ class SceneRun {
     result_.ends += events.ends.size();
     result_.whole_times.samples.push_back(whole_ms);
     result_.step_times.samples.push_back(step_ms);
-    const std::vector<StageTime> stages = engine_.stats().stages;
+    const std::vector<StageTime> stages = engine_->stats().stages;
     result_.stage_totals.resize(stages.size());
     for (std::size_t i = 0; i < stages.size(); ++i) {
       result_.stage_totals[i].stage = stages[i].stage;
@@ -135,39 +123,39 @@ class SceneRun {
 
   bool verify(const SceneStep& ops, const Events<SceneKey>& events) {
     if (!verifier_) return true;
-    if (!verifier_->check_step(ops, events)) return false;
+    if (!verifier_->check_step(ops, events, promised())) return false;
     if (result_.steps % kStepsPerPairsCheck != 0) return true;
-    return verifier_->check_pairs(engine_.pairs());
+    return verifier_->check_pairs(engine_->pairs());
   }
 
-  Engine<Scalar, Dim, SceneKey> engine_;
+  // Of the engine's own boxes without a file, as every engine without envelopes does; else of the scene's.
+  [[nodiscard]] Guarantee promised() const {
+    if (own_boxes_) return Guarantee::kExact;
+    const bool outside = engine_->envelope_report().violations > 0;
+    return guarantee(setup_, scene_, accuracy::TruthKind::kInstants, outside);
+  }
+
+  SceneInfo scene_;
+  EngineSetup setup_;
+  bool own_boxes_;  // what is verified: the boxes as the engine has them
+  std::unique_ptr<SceneEngine> engine_;
   EventsFile* events_file_;
   std::optional<Verifier> verifier_;
   std::unordered_map<SceneKey, Handle> handles_;
   std::vector<Handle> erased_;
   std::vector<Handle> updated_;
-  std::vector<Box<Scalar, Dim>> inserted_boxes_;
-  std::vector<Box<Scalar, Dim>> updated_boxes_;
   std::size_t pairs_ = 0;
   std::string broken_;  // the invariant, if one is
   SceneResult result_;
 };
-
-template <class Scalar>
-SceneResult run_with(SceneSource& source, const RunOptions& options, const std::shared_ptr<Executor>& executor,
-                     EventsFile* events) {
-  const std::uint64_t limit = options.steps.value_or(std::numeric_limits<std::uint64_t>::max());
-  if (source.info().dim == 2) return SceneRun<Scalar, 2>(options, executor, events).run(source, limit);
-  return SceneRun<Scalar, 3>(options, executor, events).run(source, limit);
-}
 
 }  // namespace
 
 SceneResult run_scene(SceneSource& source, const RunOptions& options, const std::shared_ptr<Executor>& executor,
                       EventsFile* events) {
   reset_peak_memory();
-  if (options.scalar == ScalarKind::kDouble) return run_with<double>(source, options, executor, events);
-  return run_with<float>(source, options, executor, events);
+  const std::uint64_t limit = options.steps.value_or(std::numeric_limits<std::uint64_t>::max());
+  return SceneRun(source.info(), options, executor, events).run(source, limit);
 }
 
 }  // namespace sweepgrid

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <sweepgrid/engine/config.hpp>
+
+#include "setup/treatment.hpp"
+
+namespace sweepgrid {
+
+/// Everything that decides how an engine runs over a scene, its type of numbers and its dimensions among it.
+struct EngineSetup {
+  Treatment treatment;
+  /// For the engine that comes of it, in its units; config_as() gives it the type.
+  Config<double, 3> config;
+};
+
+/// The same settings for an engine of another type. All units stay.
+template <class Scalar, int Dim>
+[[nodiscard]] Config<Scalar, Dim> config_as(const Config<double, 3>& config) {
+  // Does not compile when a setting is added, so that none is left behind.
+  const auto& [cell, cell_size, cell_population, reduction, envelope, executor, threads] = config;
+  return {cell, cell_size, cell_population, reduction, envelope, executor, threads};
+}
+
+}  // namespace sweepgrid
