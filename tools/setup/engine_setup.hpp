@@ -16,9 +16,15 @@ struct EngineSetup {
 /// The same settings for an engine of another type. All units stay.
 template <class Scalar, int Dim>
 [[nodiscard]] Config<Scalar, Dim> config_as(const Config<double, 3>& config) {
-  // Does not compile when a setting is added, so that none is left behind.
-  const auto& [cell, cell_size, cell_population, reduction, envelope, executor, threads] = config;
-  return {cell, cell_size, cell_population, reduction, envelope, executor, threads};
+  Config<Scalar, Dim> result;
+  result.cell = config.cell;
+  result.cell_size = config.cell_size;
+  result.cell_population = config.cell_population;
+  result.reduction = config.reduction;
+  result.envelope = config.envelope;
+  result.executor = config.executor;
+  result.threads = config.threads;
+  return result;
 }
 
 }  // namespace sweepgrid
