@@ -51,27 +51,13 @@ const Configuration& find_configuration(std::string_view name) {
   return *found;
 }
 
-std::string guarantee_name(Guarantee guarantee) {
-  switch (guarantee) {
-    case Guarantee::kExact:
-      return "exact";
-    case Guarantee::kSuperset:
-      return "superset only";
-    case Guarantee::kMayMiss:
-      break;
-  }
-  return "may miss";
-}
-
 Guarantee guarantee(const Configuration& configuration, accuracy::TruthKind truth, std::uint64_t violations) {
-  const EnvelopeOptions envelope = configuration.envelope.value_or(EnvelopeOptions{});
-  const bool broken = envelope.stride > 1 && envelope.on_violation == OnViolation::kReport && violations > 0;
-  if (broken) return Guarantee::kMayMiss;
-  if (truth == accuracy::TruthKind::kMotion) {
-    return envelope.swept && envelope.stride == 1 ? Guarantee::kSuperset : Guarantee::kMayMiss;
-  }
-  const bool exact = configuration.door == Door::kDouble && (!configuration.envelope || envelope.exact);
-  return exact && truth == accuracy::TruthKind::kInstants ? Guarantee::kExact : Guarantee::kSuperset;
+  EngineSetup setup;
+  setup.treatment.door = configuration.door;
+  setup.config.envelope = configuration.envelope;
+  SceneInfo scene;
+  scene.shapes = ShapeKind::kSpheres;
+  return sweepgrid::guarantee(setup, scene, truth, violations > 0);
 }
 
 }  // namespace sweepgrid::study

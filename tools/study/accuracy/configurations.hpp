@@ -9,17 +9,10 @@
 #include <sweepgrid/engine/envelope_options.hpp>
 
 #include "accuracy/truth.hpp"
+#include "setup/guarantee.hpp"
+#include "setup/treatment.hpp"
 
 namespace sweepgrid::study {
-
-/// How a scene's boxes, which are in double, come into an engine.
-enum class Door {
-  kDouble,        ///< as they are
-  kFloatNearest,  ///< rounded to the nearest float: min <= max of two ends stays true, so a superset
-  kFloatOutward,  ///< round_outward()
-  kInt32,         ///< Quantizer
-  kInt16,
-};
 
 /// A setting of the engine that trades accuracy for time, or takes part in it.
 struct Configuration {
@@ -33,12 +26,6 @@ struct Configuration {
 
 /// Throws std::invalid_argument that names it when there is none of that name.
 [[nodiscard]] const Configuration& find_configuration(std::string_view name);
-
-/// What is promised of the pairs after every step.
-enum class Guarantee { kExact, kSuperset, kMayMiss };
-
-/// "exact", "superset only", "may miss".
-[[nodiscard]] std::string guarantee_name(Guarantee guarantee);
 
 /// What `configuration` promises of a truth after `violations` as of EnvelopeReport. T2: of shapes other than the
 /// boxes.

@@ -94,7 +94,7 @@ AccuracySize AccuracySize::of(bool quick) {
 std::string truth_name(TruthKind kind) { return fmt::format("T{}", static_cast<int>(kind)); }
 
 SceneResult measure_scene(const KnownScene& scene, const AccuracySize& size) {
-  SceneResult result{scene.name, scene.objects, scene.steps.size() - 1, scene.width, {}, {}};
+  SceneResult result{scene.info.name, scene.objects, scene.steps.size() - 1, scene.width, {}, {}};
   for (const KnownTruth& truth : scene.truths) result.truths.push_back(truth.kind);
   std::vector<std::function<double()>> contenders;
   for (const Configuration& configuration : configurations()) {
