@@ -77,7 +77,7 @@ void drain(benchmark::State& state) {
   const auto churn = static_cast<std::size_t>(state.range(3));
   const auto cell = make_cell<float, 3>({kind, static_cast<int>(state.range(4))});
   std::vector<Op> ops;
-  std::vector<OverlapDelta> deltas;
+  DeltaList deltas;
   SapCounters counters;
   for (ObjectId object = 0; object < world.size(); ++object) ops.push_back(world.op(object, OpKind::kInsert));
   cell->drain(ops, deltas, counters);
@@ -191,7 +191,7 @@ class Cells {
   std::vector<std::unique_ptr<SweepAndPrune<float, 3>>> cells_;
   std::mt19937 random_{1};
   std::vector<Op> ops_;
-  std::vector<OverlapDelta> deltas_;
+  DeltaList deltas_;
   SapCounters counters_;
 };
 

@@ -105,15 +105,15 @@ std::string refresh_rows() {
           if (op.kind == OpKind::kErase) erases.push_back(all.back());
           if (op.kind == OpKind::kInsert) inserts.push_back(all.back());
         }
-        std::vector<OverlapDelta> expected;
-        std::vector<OverlapDelta> deltas;
+        DeltaList expected;
+        DeltaList deltas;
         SapCounters expected_counters;
         SapCounters counters;
         drained.drain(all, expected, expected_counters);
         refreshed.drain(erases, deltas, counters);
         const std::size_t moved = refreshed.refresh(boxes, scratch, deltas, counters);
         refreshed.drain(inserts, deltas, counters);
-        const auto net = [](const std::vector<OverlapDelta>& all_deltas) {
+        const auto net = [](const DeltaList& all_deltas) {
           std::map<PairKey, int> sums;
           for (const OverlapDelta& delta : all_deltas) sums[delta.pair] += delta.change;
           std::erase_if(sums, [](const auto& entry) { return entry.second == 0; });
@@ -187,7 +187,7 @@ std::pair<std::vector<std::pair<PairKey, int>>, SapCounters> story(const std::st
     for (int step = 0; step < 8; ++step) {
       std::vector<CellOp<Scalar, Dim>> ops;
       for (const auto& op : script.next()) ops.push_back({op.object, op.kind, OrderedBox<Scalar, Dim>(op.box)});
-      std::vector<OverlapDelta> deltas;
+      DeltaList deltas;
       cell.drain(ops, deltas, counters);
       std::sort(deltas.begin(), deltas.end(), [](const auto& a, const auto& b) { return a.pair < b.pair; });
       for (const auto& [pair, change] : deltas) story.emplace_back(pair, change);
@@ -292,7 +292,7 @@ std::vector<CellOp<float, 3>> inserts(ObjectId first, ObjectId end) {
 
 TEST(RowCell, EachPairThatChangesHasOneDelta) {
   RowCell<float, 3> cell;
-  std::vector<OverlapDelta> deltas;
+  DeltaList deltas;
   SapCounters counters;
   auto ops = inserts(0, 100);
   cell.drain(ops, deltas, counters);
@@ -310,7 +310,7 @@ TEST(RowCell, EachPairThatChangesHasOneDelta) {
 TEST(RowCell, IsSmallAndCanBeMoved) {
   static_assert(sizeof(RowCell<float, 3>) <= 24);
   std::vector<RowCell<float, 3>> cells;
-  std::vector<OverlapDelta> deltas;
+  DeltaList deltas;
   SapCounters counters;
   for (ObjectId first = 0; first < 20; ++first) cells.emplace_back().drain(inserts(first, 2 * first), deltas, counters);
   for (std::size_t index = 0; index < cells.size(); ++index) {
@@ -326,7 +326,7 @@ TEST(RowCell, IsSmallAndCanBeMoved) {
 
 TEST(RowCell, HoldsLittleMoreMemoryThanItUses) {
   RowCell<float, 3> cell;
-  std::vector<OverlapDelta> deltas;
+  DeltaList deltas;
   SapCounters counters;
   constexpr std::size_t kObject = 28;
   constexpr std::size_t kVector = 64;

@@ -58,14 +58,15 @@ class CellOracle {
 
     // A delta that is there already must stay: drain() appends.
     const OverlapDelta sentinel{PairKey(0, 1), 12345};
-    std::vector<OverlapDelta> deltas{sentinel};
+    DeltaList appended;
+    appended.push_back(sentinel);
     const std::uint64_t counted = counters_.deltas;
     try {
-      cell.drain(cell_ops, deltas, counters_);
-      if (deltas.empty() || deltas[0].pair != sentinel.pair || deltas[0].change != sentinel.change) {
+      cell.drain(cell_ops, appended, counters_);
+      if (appended.empty() || appended[0].pair != sentinel.pair || appended[0].change != sentinel.change) {
         return "drain() did not append to the deltas";
       }
-      deltas.erase(deltas.begin());
+      const std::vector<OverlapDelta> deltas(appended.begin() + 1, appended.end());
       if (counters_.deltas - counted != deltas.size()) return "the delta counter is not the number of deltas";
       for (const OverlapDelta& delta : deltas) {
         for (const ObjectId object : {delta.pair.lower(), delta.pair.upper()}) {
@@ -117,7 +118,8 @@ class CellOracle {
         if (was != is) expected[PairKey(object, visit.object)] = is ? +1 : -1;
       }
     }
-    std::vector<OverlapDelta> deltas(1);
+    DeltaList deltas;
+    deltas.push_back({});
     SapCounters counters;
     cell.visit(cell_visits, deltas, counters);
     if (counters.box_tests != box_tests) return "visit() miscounts the pairs that it compares";

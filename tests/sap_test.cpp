@@ -111,7 +111,7 @@ INSTANTIATE_TEST_SUITE_P(Cells, AnyCell, testing::ValuesIn(kKinds), name_of_kind
 std::string refusal(Cell2& cell, const std::vector<Op2>& ops) {
   std::vector<CellOp<float, 2>> cell_ops;
   for (const Op2& op : ops) cell_ops.push_back({op.object, op.kind, OrderedBox<float, 2>(op.box)});
-  std::vector<OverlapDelta> deltas;
+  DeltaList deltas;
   SapCounters counters;
   try {
     cell.drain(cell_ops, deltas, counters);

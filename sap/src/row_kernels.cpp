@@ -73,7 +73,7 @@ namespace sweepgrid::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 /// Appends a delta for every pair that an object changes.
-HWY_NOINLINE void report(ObjectId object, const ObjectId* others, Hits hits, std::vector<OverlapDelta>& deltas) {
+HWY_NOINLINE void report(ObjectId object, const ObjectId* others, Hits hits, DeltaList& deltas) {
   for (Lanes changed = hits & 0xffff; changed != 0; changed &= changed - 1) {
     const int lane = std::countr_zero(changed);
     deltas.push_back({PairKey(object, others[lane]), (hits >> (16 + lane) & 1) != 0 ? +1 : -1});
@@ -83,7 +83,7 @@ HWY_NOINLINE void report(ObjectId object, const ObjectId* others, Hits hits, std
 /// Reports what ops or visits change. In a loop of its own, because a call between vector operations would force their
 /// registers into memory.
 template <class Views>
-HWY_INLINE void report(Scratch& scratch, Views views, const ObjectId* others, std::vector<OverlapDelta>& deltas) {
+HWY_INLINE void report(Scratch& scratch, Views views, const ObjectId* others, DeltaList& deltas) {
   for (std::size_t index = 0; index < views.size(); ++index) {
     const Hits hits = scratch.hits(index);
     if ((hits & 0xffff) != 0) report(views[index].object(), others, hits, deltas);
@@ -141,7 +141,7 @@ struct Kernels {
   }
 
   /// Reports the pairs that cease with the erased objects, each once.
-  static HWY_NOINLINE void part(const Block& block, Ops ops, Scratch& scratch, std::vector<OverlapDelta>& deltas) {
+  static HWY_NOINLINE void part(const Block& block, Ops ops, Scratch& scratch, DeltaList& deltas) {
     for (std::uint32_t first = 0; first < block.size(); first += kLanes) {
       const Box boxes = Box::load(block, first);
       Lanes open = lanes_below(first, block.size());
@@ -186,8 +186,7 @@ struct Kernels {
 
   /// Reports how pairs change with the updated and inserted objects, each once, and writes the new boxes. `known`: the
   /// number of objects that have boxes; the inserted ones follow.
-  static HWY_INLINE void change(Block& block, std::uint32_t known, Ops ops, Scratch& scratch,
-                                std::vector<OverlapDelta>& deltas) {
+  static HWY_INLINE void change(Block& block, std::uint32_t known, Ops ops, Scratch& scratch, DeltaList& deltas) {
     if (block.size() <= kLanes) {
       change_lanes<true>(block, 0, known, ops, scratch, deltas);
       return;
@@ -200,7 +199,7 @@ struct Kernels {
 
   template <bool kAlone>
   static HWY_INLINE void change_lanes(Block& block, std::uint32_t first, std::uint32_t known, Ops ops, Scratch& scratch,
-                                      std::vector<OverlapDelta>& deltas) {
+                                      DeltaList& deltas) {
     const Box old_boxes = Box::load(block, first);
     Box new_boxes = old_boxes;
     for (std::size_t index = 0; index < ops.size(); ++index) {
@@ -231,7 +230,7 @@ struct Kernels {
     report(scratch, ops, block.ids() + first, deltas);
   }
 
-  static std::size_t drain(Block& block, Ops ops, std::vector<OverlapDelta>& deltas, SapCounters& counters) {
+  static std::size_t drain(Block& block, Ops ops, DeltaList& deltas, SapCounters& counters) {
     Scratch scratch(ops.size());
     Tally tally;
     const std::size_t refused = resolve(block, ops, scratch, tally);
@@ -263,8 +262,8 @@ struct Kernels {
     return arriving;
   }
 
-  static void refresh(Block& block, const Bits* boxes, std::span<const std::uint32_t> moved,
-                      std::vector<OverlapDelta>& deltas, SapCounters& counters) {
+  static void refresh(Block& block, const Bits* boxes, std::span<const std::uint32_t> moved, DeltaList& deltas,
+                      SapCounters& counters) {
     Scratch scratch(moved.size());
     const std::size_t deltas_before = deltas.size();
     for (std::uint32_t first = 0; first < block.size(); first += kLanes) {
@@ -308,7 +307,7 @@ struct Kernels {
     return ops.size();
   }
 
-  static void visit(const Block& block, Visits visits, std::vector<OverlapDelta>& deltas, SapCounters& counters) {
+  static void visit(const Block& block, Visits visits, DeltaList& deltas, SapCounters& counters) {
     Scratch scratch(visits.size());
     const std::size_t deltas_before = deltas.size();
     for (std::uint32_t first = 0; first < block.size(); first += kLanes) {
@@ -332,25 +331,23 @@ struct Kernels {
 };
 
 // Highway's tables want functions that are no templates.
-#define SWEEPGRID_ROW_KERNELS(WIDTH, DIM)                                                                      \
-  std::size_t drain_##WIDTH##_##DIM(RowBlock<std::uint##WIDTH##_t, DIM>& block,                                \
-                                    OpViews<std::uint##WIDTH##_t, DIM> ops, std::vector<OverlapDelta>& deltas, \
-                                    SapCounters& counters) {                                                   \
-    return Kernels<std::uint##WIDTH##_t, DIM>::drain(block, ops, deltas, counters);                            \
-  }                                                                                                            \
-  std::size_t transfer_##WIDTH##_##DIM(RowBlock<std::uint##WIDTH##_t, DIM>& block,                             \
-                                       OpViews<std::uint##WIDTH##_t, DIM> ops) {                               \
-    return Kernels<std::uint##WIDTH##_t, DIM>::transfer(block, ops);                                           \
-  }                                                                                                            \
-  void refresh_##WIDTH##_##DIM(RowBlock<std::uint##WIDTH##_t, DIM>& block, const std::uint##WIDTH##_t* boxes,  \
-                               std::span<const std::uint32_t> moved, std::vector<OverlapDelta>& deltas,        \
-                               SapCounters& counters) {                                                        \
-    Kernels<std::uint##WIDTH##_t, DIM>::refresh(block, boxes, moved, deltas, counters);                        \
-  }                                                                                                            \
-  void visit_##WIDTH##_##DIM(const RowBlock<std::uint##WIDTH##_t, DIM>& block,                                 \
-                             VisitViews<std::uint##WIDTH##_t, DIM> visits, std::vector<OverlapDelta>& deltas,  \
-                             SapCounters& counters) {                                                          \
-    Kernels<std::uint##WIDTH##_t, DIM>::visit(block, visits, deltas, counters);                                \
+#define SWEEPGRID_ROW_KERNELS(WIDTH, DIM)                                                                              \
+  std::size_t drain_##WIDTH##_##DIM(RowBlock<std::uint##WIDTH##_t, DIM>& block,                                        \
+                                    OpViews<std::uint##WIDTH##_t, DIM> ops, DeltaList& deltas,                         \
+                                    SapCounters& counters) {                                                           \
+    return Kernels<std::uint##WIDTH##_t, DIM>::drain(block, ops, deltas, counters);                                    \
+  }                                                                                                                    \
+  std::size_t transfer_##WIDTH##_##DIM(RowBlock<std::uint##WIDTH##_t, DIM>& block,                                     \
+                                       OpViews<std::uint##WIDTH##_t, DIM> ops) {                                       \
+    return Kernels<std::uint##WIDTH##_t, DIM>::transfer(block, ops);                                                   \
+  }                                                                                                                    \
+  void refresh_##WIDTH##_##DIM(RowBlock<std::uint##WIDTH##_t, DIM>& block, const std::uint##WIDTH##_t* boxes,          \
+                               std::span<const std::uint32_t> moved, DeltaList& deltas, SapCounters& counters) {       \
+    Kernels<std::uint##WIDTH##_t, DIM>::refresh(block, boxes, moved, deltas, counters);                                \
+  }                                                                                                                    \
+  void visit_##WIDTH##_##DIM(const RowBlock<std::uint##WIDTH##_t, DIM>& block,                                         \
+                             VisitViews<std::uint##WIDTH##_t, DIM> visits, DeltaList& deltas, SapCounters& counters) { \
+    Kernels<std::uint##WIDTH##_t, DIM>::visit(block, visits, deltas, counters);                                        \
   }
 SWEEPGRID_ALL_ROW_KERNELS
 #undef SWEEPGRID_ROW_KERNELS
@@ -361,30 +358,30 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace sweepgrid {
 
-#define SWEEPGRID_ROW_KERNELS(WIDTH, DIM)                                                                            \
-  HWY_EXPORT(drain_##WIDTH##_##DIM);                                                                                 \
-  HWY_EXPORT(transfer_##WIDTH##_##DIM);                                                                              \
-  HWY_EXPORT(refresh_##WIDTH##_##DIM);                                                                               \
-  HWY_EXPORT(visit_##WIDTH##_##DIM);                                                                                 \
-  template <>                                                                                                        \
-  std::size_t RowKernels<std::uint##WIDTH##_t, DIM>::drain(Block& block, Ops ops, std::vector<OverlapDelta>& deltas, \
-                                                           SapCounters& counters) {                                  \
-    return HWY_DYNAMIC_DISPATCH(drain_##WIDTH##_##DIM)(block, ops, deltas, counters);                                \
-  }                                                                                                                  \
-  template <>                                                                                                        \
-  std::size_t RowKernels<std::uint##WIDTH##_t, DIM>::transfer(Block& block, Ops ops) {                               \
-    return HWY_DYNAMIC_DISPATCH(transfer_##WIDTH##_##DIM)(block, ops);                                               \
-  }                                                                                                                  \
-  template <>                                                                                                        \
-  void RowKernels<std::uint##WIDTH##_t, DIM>::refresh(Block& block, const std::uint##WIDTH##_t* boxes,               \
-                                                      std::span<const std::uint32_t> moved,                          \
-                                                      std::vector<OverlapDelta>& deltas, SapCounters& counters) {    \
-    HWY_DYNAMIC_DISPATCH(refresh_##WIDTH##_##DIM)(block, boxes, moved, deltas, counters);                            \
-  }                                                                                                                  \
-  template <>                                                                                                        \
-  void RowKernels<std::uint##WIDTH##_t, DIM>::visit(const Block& block, Visits visits,                               \
-                                                    std::vector<OverlapDelta>& deltas, SapCounters& counters) {      \
-    HWY_DYNAMIC_DISPATCH(visit_##WIDTH##_##DIM)(block, visits, deltas, counters);                                    \
+#define SWEEPGRID_ROW_KERNELS(WIDTH, DIM)                                                                      \
+  HWY_EXPORT(drain_##WIDTH##_##DIM);                                                                           \
+  HWY_EXPORT(transfer_##WIDTH##_##DIM);                                                                        \
+  HWY_EXPORT(refresh_##WIDTH##_##DIM);                                                                         \
+  HWY_EXPORT(visit_##WIDTH##_##DIM);                                                                           \
+  template <>                                                                                                  \
+  std::size_t RowKernels<std::uint##WIDTH##_t, DIM>::drain(Block& block, Ops ops, DeltaList& deltas,           \
+                                                           SapCounters& counters) {                            \
+    return HWY_DYNAMIC_DISPATCH(drain_##WIDTH##_##DIM)(block, ops, deltas, counters);                          \
+  }                                                                                                            \
+  template <>                                                                                                  \
+  std::size_t RowKernels<std::uint##WIDTH##_t, DIM>::transfer(Block& block, Ops ops) {                         \
+    return HWY_DYNAMIC_DISPATCH(transfer_##WIDTH##_##DIM)(block, ops);                                         \
+  }                                                                                                            \
+  template <>                                                                                                  \
+  void RowKernels<std::uint##WIDTH##_t, DIM>::refresh(Block& block, const std::uint##WIDTH##_t* boxes,         \
+                                                      std::span<const std::uint32_t> moved, DeltaList& deltas, \
+                                                      SapCounters& counters) {                                 \
+    HWY_DYNAMIC_DISPATCH(refresh_##WIDTH##_##DIM)(block, boxes, moved, deltas, counters);                      \
+  }                                                                                                            \
+  template <>                                                                                                  \
+  void RowKernels<std::uint##WIDTH##_t, DIM>::visit(const Block& block, Visits visits, DeltaList& deltas,      \
+                                                    SapCounters& counters) {                                   \
+    HWY_DYNAMIC_DISPATCH(visit_##WIDTH##_##DIM)(block, visits, deltas, counters);                              \
   }
 SWEEPGRID_ALL_ROW_KERNELS
 #undef SWEEPGRID_ROW_KERNELS

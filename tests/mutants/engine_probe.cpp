@@ -6,6 +6,7 @@
 #include <exception>
 #include <iostream>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -167,10 +168,48 @@ int probe_following(TestConfig config) {
   return 0;
 }
 
+/// Steps are refused now and then, some of them several times.
+int probe_refusals(const TestConfig& config, const oracle::SceneRegime& regime) {
+  TestEngine engine(config);
+  Client client;
+  oracle::SceneScript<float, 2> script(regime, 1);
+  oracle::Random random(1);
+  std::size_t pairs = 0;
+  for (int number = 0; number < regime.steps; ++number) {
+    try {
+      queue(engine, client, script.next());
+      const int tries = random.below(3);
+      for (int i = 0; i < tries; ++i) {
+        engine.set_step_bytes(std::uint64_t{1} << random.below(12));
+        const auto& events = engine.step();
+        std::string finding;
+        if (engine.status() == StepStatus::kDone) {
+          finding = client.hear(events);
+          pairs = engine.pairs().size();
+        } else if (!events.begins.empty() || !events.ends.empty() || engine.pairs().size() != pairs) {
+          finding = "refused: a step that was refused has left something behind";
+        }
+        if (!finding.empty()) return report(regime.name, number, {finding});
+      }
+    } catch (const std::exception& error) {
+      return report(regime.name, number, {text_of(error)});
+    }
+    engine.set_step_bytes(std::nullopt);
+    if (number % 2 == 0) continue;
+    const auto findings = step(engine, client, {});
+    if (!findings.empty()) return report(regime.name, number, findings);
+    pairs = engine.pairs().size();
+  }
+  return 0;
+}
+
 int probe_scenes() {
   const TestConfig rows = config_of(CellKind::kRows, Reduction::kSingleReporter, 0);
   const TestConfig batch = config_of(CellKind::kBatch, Reduction::kSingleReporter, 0);
   const TestConfig fine = config_of(CellKind::kRows, Reduction::kSingleReporter, 1);
+  const TestConfig counts = config_of(CellKind::kRows, Reduction::kWitnessCounts, 0);
+  if (probe_refusals(rows, kFleeting) != 0 || probe_refusals(batch, kSizes) != 0) return 1;
+  if (probe_refusals(counts, kFleeting) != 0) return 1;
   if (probe_following(config_of(CellKind::kRows, Reduction::kSingleReporter, 0)) != 0) return 1;
   for (const auto& regime : {kByTurns, kSizes, kGiants, kFollowed}) {
     if (probe_scene(rows, regime) != 0 || probe_scene(batch, regime) != 0) return 1;

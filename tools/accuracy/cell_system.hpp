@@ -28,7 +28,7 @@ class CellSystem final : public baselines::System {
  private:
   std::unique_ptr<SweepAndPrune<float, 3>> cell_;
   std::vector<CellOp<float, 3>> ops_;
-  std::vector<OverlapDelta> deltas_;
+  DeltaList deltas_;
   SapCounters counters_;
   PairLog log_;
   baselines::EventTotals totals_;

@@ -67,7 +67,7 @@ class CellSystem final : public System {
   std::size_t pieces_;
   std::unique_ptr<SweepAndPrune<float, 3>> cell_;
   std::vector<Op> ops_;
-  std::vector<OverlapDelta> deltas_;
+  DeltaList deltas_;
   std::vector<std::pair<PairKey, std::int32_t>> all_deltas_;
   Work work_;
 };

@@ -21,6 +21,7 @@
 #include <sweepgrid/engine/key_order.hpp>
 #include <sweepgrid/engine/key_table.hpp>
 #include <sweepgrid/engine/stats.hpp>
+#include <sweepgrid/engine/step_status.hpp>
 
 namespace sweepgrid {
 
@@ -91,8 +92,22 @@ class Engine {
   /// Applies all that was queued and returns the net change of the set of overlapping pairs since the last step: the
   /// same events in the same order for any thread count, cell kind, grid and order of queueing calls.
   /// The reference stays good, and its content unchanged, until the next step(). O(u + e) beside the cells' work.
-  /// Throws only what allocation throws; after that the engine can only be destroyed.
+  ///
+  /// A step beyond Config::step_bytes is refused: no events, status() says so, pairs() are those of the latest step
+  /// that was done, and all that was queued is still queued. It goes through once the client has erased or moved
+  /// objects, or has raised the limit. The cells are made anew, so a refused step costs about as much as inserting all
+  /// objects.
+  ///
+  /// Throws only what allocation throws, and then leaves everything as a refused step does; pairs() throws
+  /// std::logic_error if there was no memory for the cells either, until another step(). Two cases are not covered:
+  /// with EnvelopeOptions::exact, the engine can only be destroyed after that, and oneTBB's own allocations must not
+  /// fail.
   const Events<Key>& step();
+
+  /// What became of the latest step(); kDone before the first one.
+  [[nodiscard]] StepStatus status() const { return status_; }
+  /// Config::step_bytes of later steps.
+  void set_step_bytes(std::optional<std::uint64_t> bytes) { core_.set_step_bytes(bytes); }
 
   /// Every overlapping pair as of the latest step, sorted as events are. Built on demand: O(p log p).
   [[nodiscard]] std::vector<Pair<Key>> pairs() const;
@@ -129,6 +144,8 @@ class Engine {
   using Sorter = EventOrder<Key, Order>;
   enum List : std::size_t { kEnds, kBegins, kLists };
 
+  bool step_core();
+  void forget_events();
   void add_order_stages();
   void trim_to_objects();
   void sort_shard(std::size_t list, std::size_t shard);
@@ -166,7 +183,7 @@ class Engine {
   void store_envelopes(std::span<const Handle> handles, std::span<const BoxType> boxes,
                        std::span<const BoxType> envelopes);
   void erase_envelopes(const Share& share, std::span<const Handle> objects);
-  bool begin_step_with_envelopes();
+  bool step_with_envelopes();
   void add_envelope_stats(Stats& stats) const;
   void validate_envelopes() const;
   void require_margin(const Key& key, const char* call, double margin) const;
@@ -183,6 +200,7 @@ class Engine {
   std::unique_ptr<FilterType> filter_;        // with EnvelopeOptions::exact
   KeyTable<Key, Hash> keys_;
   Events<Key> events_;
+  StepStatus status_ = StepStatus::kDone;
   std::array<Sorter, kLists> sorters_;
   /// What the merge stage writes: ranges of one list, then of the other.
   std::array<std::size_t, kLists> ranges_{};

@@ -14,7 +14,7 @@ namespace sweepgrid {
 #define SWEEPGRID_ENGINE Engine<Scalar, Dim, Key, Hash, Order>
 
 SWEEPGRID_ENGINE_TEMPLATE
-SWEEPGRID_ENGINE::Engine(ConfigType config) : core_(config) {
+SWEEPGRID_ENGINE::Engine(ConfigType config) : core_(config, sizeof(PairKey) + 2 * sizeof(Pair<Key>)) {
   make_envelopes(config.envelope);
   add_order_stages();
 }
@@ -111,15 +111,31 @@ void SWEEPGRID_ENGINE::erase(const Key& key) { erase(core_.objects().handle(live
 
 SWEEPGRID_ENGINE_TEMPLATE
 const Events<Key>& SWEEPGRID_ENGINE::step() {
-  if (envelopes_ && !begin_step_with_envelopes()) return events_;
-  if (!core_.objects().anything_queued()) {
-    events_.ends.clear();
-    events_.begins.clear();
+  try {
+    const bool done = envelopes_ ? step_with_envelopes() : step_core();
+    status_ = done ? StepStatus::kDone : StepStatus::kOverBudget;
+    if (!done) forget_events();
+  } catch (...) {
+    forget_events();
+    throw;
   }
-  core_.step();
-  core_.count_events(events_.begins.size(), events_.ends.size());
-  if (core_.objects().trim()) trim_to_objects();
+  if (!core_.objects().anything_queued() && core_.objects().trim()) trim_to_objects();
   return events_;
+}
+
+// Returns whether the step was done.
+SWEEPGRID_ENGINE_TEMPLATE
+bool SWEEPGRID_ENGINE::step_core() {
+  if (!core_.objects().anything_queued()) forget_events();
+  if (!core_.step()) return false;
+  if (!filter_) core_.count_events(events_.begins.size(), events_.ends.size());
+  return true;
+}
+
+SWEEPGRID_ENGINE_TEMPLATE
+void SWEEPGRID_ENGINE::forget_events() {
+  events_.ends.clear();
+  events_.begins.clear();
 }
 
 SWEEPGRID_ENGINE_TEMPLATE

@@ -16,6 +16,7 @@
 #include <sweepgrid/engine/witness_table.hpp>
 #include <sweepgrid/grid/grid_fit.hpp>
 #include <sweepgrid/grid/levels.hpp>
+#include <sweepgrid/sap/step_budget.hpp>
 #include <sweepgrid/scheduler/stage_graph.hpp>
 
 namespace sweepgrid {
@@ -29,8 +30,8 @@ class EngineCore {
   using ConfigType = Config<Scalar, Dim>;
   using Objects = ObjectTable<Scalar, Dim>;
 
-  /// Throws std::invalid_argument that names the setting.
-  explicit EngineCore(ConfigType config);
+  /// Throws std::invalid_argument that names the setting. `event_bytes`: what the lists of an event take in all.
+  explicit EngineCore(ConfigType config, std::size_t event_bytes = 3 * sizeof(PairKey));
   ~EngineCore();
 
   [[nodiscard]] Objects& objects() { return objects_; }
@@ -42,8 +43,10 @@ class EngineCore {
   [[nodiscard]] StageGraph::StageId last_stage() const { return reduce_stage_; }
   [[nodiscard]] Executor& executor() const { return *executor_; }
 
-  /// Runs the graph on what was queued, then lets erased ids be reused.
-  void step();
+  /// Runs the graph on what was queued, then lets erased ids be reused. Returns false when that is over the budget;
+  /// then, and when it throws, everything is as before: ops queued, pairs those of the latest step that was done.
+  [[nodiscard]] bool step();
+  void set_step_bytes(std::optional<std::uint64_t> bytes) { config_.step_bytes = bytes; }
 
   /// The events of the latest step come in lists, in no order; with single reporters a list may name a pair twice.
   [[nodiscard]] std::size_t lists() const { return counting() ? shards_.size() : tasks_.size(); }
@@ -126,15 +129,21 @@ class EngineCore {
   void gather(std::size_t task);
   void plan_drain(std::vector<std::uint64_t>& costs);
   void drain(std::size_t task);
-  void report(DrainTask& task) const;
+  void report(DrainTask& task);
   void partition(DrainTask& task) const;
   void plan_reduce(std::vector<std::uint64_t>& costs);
   void reduce(std::size_t shard);
+  static void keep_changes(Shard& shard, const WitnessTable& before);
   void finish_step();
+  void take_back_step() noexcept;
+  void restore_cells();
+  void restore_cells_of(GridType& grid);
 
   void follow_scene();
   void follow_with_counts();
   void follow_with_levels();
+  void start_single(const typename GridFit<Scalar, Dim>::Result& result, const GridSpec<Scalar, Dim>& spec);
+  [[nodiscard]] GridSpec<Scalar, Dim> bounded(const typename GridFit<Scalar, Dim>::Result& result) const;
   void start_family(double cell_size, const std::array<double, Dim>& origin, const std::vector<BoxType>& sample);
   [[nodiscard]] typename GridFit<Scalar, Dim>::Result fit(const std::vector<BoxType>& sample) const;
   [[nodiscard]] std::vector<BoxType> sample(std::size_t count) const;
@@ -174,6 +183,9 @@ class EngineCore {
   std::uint64_t pairs_ = 0;          // by the events
   bool idle_ = true;                 // the latest step had nothing to do
   bool regridding_ = false;          // with witness counts: this step inserts every object into a new grid
+  bool broken_ = false;              // a step was taken back, and there was no memory to restore the cells
+  StepBudget budget_;
+  std::size_t event_bytes_;
   std::vector<RouteBlock> blocks_;
   std::vector<GatherTask> gathers_;
   std::uint64_t task_cost_ = 1;
@@ -184,6 +196,7 @@ class EngineCore {
   StepCounters counters_;
   StepCounters total_;
   std::uint64_t steps_ = 0;
+  std::uint64_t refused_ = 0;  // steps that were over the budget
 
   std::unique_ptr<StageGraph> graph_;
   StageGraph::StageId reduce_stage_ = 0;

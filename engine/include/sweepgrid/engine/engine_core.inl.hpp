@@ -13,6 +13,7 @@
 #include <sweepgrid/engine/envelope_filter.inl.hpp>
 #include <sweepgrid/engine/envelopes.inl.hpp>
 #include <sweepgrid/engine/follow_scene.inl.hpp>
+#include <sweepgrid/engine/take_back.inl.hpp>
 #include <sweepgrid/engine/validate.inl.hpp>
 #include <sweepgrid/grid/grid_fit.inl.hpp>
 #include <sweepgrid/grid/levels.inl.hpp>
@@ -48,7 +49,8 @@ void require_valid(const Config<Scalar, Dim>& config) {
 }  // namespace engine_core
 
 template <class Scalar, int Dim>
-EngineCore<Scalar, Dim>::EngineCore(ConfigType config) : config_(std::move(config)) {
+EngineCore<Scalar, Dim>::EngineCore(ConfigType config, std::size_t event_bytes)
+    : config_(std::move(config)), event_bytes_(event_bytes) {
   engine_core::require_valid(config_);
   executor_ = config_.executor ? config_.executor : make_executor(config_.threads);
   const auto workers = static_cast<std::size_t>(executor_->concurrency());
@@ -78,18 +80,30 @@ template <class Scalar, int Dim>
 EngineCore<Scalar, Dim>::~EngineCore() = default;
 
 template <class Scalar, int Dim>
-void EngineCore<Scalar, Dim>::step() {
+bool EngineCore<Scalar, Dim>::step() {
+  if (broken_) restore_cells();
   counters_ = StepCounters{};
   regridding_ = false;
   idle_ = !objects_.anything_queued();
-  if (!idle_) {
-    graph_->run();
-    finish_step();
-  } else {
+  if (idle_) {
     tasks_.clear();
     for (Shard& shard : shards_) shard.begins.clear(), shard.ends.clear();
+  } else {
+    budget_.start(config_.step_bytes.value_or(StepBudget::kUnlimited));
+    try {
+      graph_->run();
+      finish_step();
+    } catch (const OverBudget&) {
+      take_back_step();
+      ++refused_;
+      return false;
+    } catch (...) {
+      take_back_step();
+      throw;
+    }
   }
   ++steps_;
+  return true;
 }
 
 // ---- route: marked objects to cell queues, by block of objects
@@ -120,7 +134,7 @@ void EngineCore<Scalar, Dim>::plan_route(std::vector<std::uint64_t>& costs) {
     block.relocated.clear();
     costs.push_back(end - first);
   }
-  for (const GridIndex grid : levels_.live()) levels_.grid(grid).begin_step(wanted, dense_);
+  for (const GridIndex grid : levels_.live()) levels_.grid(grid).begin_step(wanted, dense_, &budget_);
 }
 
 // Judged by every 16th of the granules with a mark; in the others nothing has changed.
@@ -335,7 +349,11 @@ void EngineCore<Scalar, Dim>::plan_drain(std::vector<std::uint64_t>& costs) {
     if (gathered.grid == levels_.finest()) met += gathered.met, ops += gathered.ops;
     std::size_t first = 0;
     for (std::size_t i = 0; i < gathered.cuts.size(); ++i) {
-      if (used == tasks_.size()) tasks_.emplace_back();
+      if (used == tasks_.size()) {
+        // With witness counts, deltas are written a second time, by shard.
+        const std::size_t copies = counting() ? 2 : 1;
+        tasks_.emplace_back().out.deltas = DeltaList(budget_, copies * sizeof(OverlapDelta));
+      }
       DrainTask& task = tasks_[used++];
       task.grid = gathered.grid;
       task.shard = gathered.shard;
@@ -353,12 +371,13 @@ void EngineCore<Scalar, Dim>::drain(std::size_t index) {
   DrainTask& task = tasks_[index];
   task.out.clear();
   levels_.grid(task.grid).drain(task.shard, task.cells, StepBoxes<Scalar, Dim>(objects_, steps_ + 1), task.out);
+  task.out.deltas.charge();
   counting() ? partition(task) : report(task);
 }
 
 // Deltas to events, while they are still in the worker's cache.
 template <class Scalar, int Dim>
-void EngineCore<Scalar, Dim>::report(DrainTask& task) const {
+void EngineCore<Scalar, Dim>::report(DrainTask& task) {
   task.begins.clear();
   task.ends.clear();
   const Reporter<Scalar, Dim> reporter(objects_, levels_, steps_ + 1);
@@ -375,6 +394,7 @@ void EngineCore<Scalar, Dim>::report(DrainTask& task) const {
       if (verdict == Verdict::kEnd) task.ends.push_back(pair);
     }
   }
+  budget_.charge((task.begins.size() + task.ends.size()) * event_bytes_);
 }
 
 // Deltas into slots by shard, while they are still in the worker's cache.
@@ -409,9 +429,14 @@ void EngineCore<Scalar, Dim>::reduce(std::size_t index) {
     shard.witnesses.apply(std::span(task.by_shard).subspan(first, task.shard_end[index] - first));
   }
   shard.witnesses.finish(shard.begins, shard.ends);
-  if (!regridding_) return;
-  // Every pair began in the new grid. What the old grid's table does not know has really begun, and what only it knows
-  // has ended.
+  if (regridding_) keep_changes(shard, before);
+  budget_.charge((shard.begins.size() + shard.ends.size()) * event_bytes_);
+}
+
+// After a regrid. Every pair began in the new grid. What the old grid's table does not know has really begun, and what
+// only it knows has ended.
+template <class Scalar, int Dim>
+void EngineCore<Scalar, Dim>::keep_changes(Shard& shard, const WitnessTable& before) {
   std::erase_if(shard.begins, [&](PairKey pair) { return before.count(pair) > 0; });
   std::vector<PairKey> old_pairs;
   before.append_pairs(old_pairs);
@@ -422,14 +447,19 @@ void EngineCore<Scalar, Dim>::reduce(std::size_t index) {
 
 template <class Scalar, int Dim>
 void EngineCore<Scalar, Dim>::finish_step() {
-  for (RouteBlock& block : blocks_) {
-    counters_ += block.counters;
-    objects_.free_ids(block.retired);
-    for (const auto& [object, home] : block.relocated) objects_.record(object).grid = home;
-  }
+  std::size_t retired = 0;
+  for (const RouteBlock& block : blocks_) retired += block.retired.size();
+  objects_.reserve_free(retired);
   for (const DrainTask& task : tasks_) {
     counters_.cells += task.out.counters;
     levels_.grid(task.grid).drop_empty(task.shard, task.out.emptied);
+  }
+  // Nothing throws from here on, so the step cannot be taken back any more.
+  for (RouteBlock& block : blocks_) {
+    counters_ += block.counters;
+    objects_.free_ids(block.retired);
+    block.retired.clear();  // lest a step that fails before it routes frees them again
+    for (const auto& [object, home] : block.relocated) objects_.record(object).grid = home;
   }
   last_changed_ = counters_.inserts + counters_.updates + counters_.erases;
   if (levels_.live().size() > 1)
@@ -449,6 +479,7 @@ void EngineCore<Scalar, Dim>::count_events(std::size_t begins, std::size_t ends)
 
 template <class Scalar, int Dim>
 std::vector<PairKey> EngineCore<Scalar, Dim>::pairs() const {
+  if (broken_) throw std::logic_error("sweepgrid: pairs after a step() that ran out of memory, before another step()");
   std::vector<PairKey> pairs;
   if (counting()) {
     for (const Shard& shard : shards_) shard.witnesses.append_pairs(pairs);
@@ -464,6 +495,7 @@ Stats EngineCore<Scalar, Dim>::stats() const {
   stats.step = counters_;
   stats.total = total_;
   stats.steps = steps_;
+  stats.refused = refused_;
   for (StageGraph::StageId stage = 0; stage < graph_->size(); ++stage) {
     stats.stages.push_back({graph_->name(stage), idle_ ? 0 : graph_->seconds(stage)});
   }

@@ -150,19 +150,29 @@ void SWEEPGRID_ENGINE::erase_envelopes(const Share& share, std::span<const Handl
 
 // ---- the step
 
-// Returns whether the rest of the step is that of an engine without envelopes.
 SWEEPGRID_ENGINE_TEMPLATE
-bool SWEEPGRID_ENGINE::begin_step_with_envelopes() {
-  const bool query = envelopes_->begin_step(core_.objects(), core_.executor());
-  if (query && !filter_) return true;
-  if (query) core_.step();
-  if (!filter_ || !filter_->step(query)) {
-    events_.ends.clear();
-    events_.begins.clear();
+bool SWEEPGRID_ENGINE::step_with_envelopes() {
+  bool query = false;
+  bool done = true;
+  try {
+    query = envelopes_->begin_step(core_.objects(), core_.executor());
+    if (query) done = step_core();
+  } catch (...) {
+    envelopes_->cancel_step(core_.objects());
+    throw;
   }
-  if (filter_) filter_->count_events(events_.begins.size(), events_.ends.size());
-  if (query && core_.objects().trim()) trim_to_objects();
-  return false;
+  if (!done) {
+    envelopes_->cancel_step(core_.objects());
+    return false;
+  }
+  if (query) envelopes_->end_query(core_.executor());
+  if (!filter_) {
+    if (!query) forget_events();
+    return true;
+  }
+  if (!filter_->step(query)) forget_events();
+  filter_->count_events(events_.begins.size(), events_.ends.size());
+  return true;
 }
 
 // ---- what is asked for

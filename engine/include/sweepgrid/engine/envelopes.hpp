@@ -9,6 +9,7 @@
 #include <mutex>
 #include <span>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include <sweepgrid/engine/envelope_box.hpp>
@@ -77,8 +78,12 @@ class Envelopes {
 
   // ---- the step
 
-  /// Decides whether this step is a query, and if it is, queues new envelopes with `objects`.
+  /// Decides whether this step is a query, and if it is, queues new envelopes with `objects`; end_query() is to follow.
+  /// If it throws, or the query cannot be made, cancel_step().
   bool begin_step(Objects& objects, Executor& executor);
+  void end_query(Executor& executor);
+  /// As if begin_step() had not been called. Throws nothing.
+  void cancel_step(Objects& objects);
 
   /// Objects whose marks are looked for together, and which of them held a marked object as the step began.
   static constexpr ObjectId kGranule = Objects::kGranule;
@@ -134,10 +139,17 @@ class Envelopes {
     float margin;  // kCommonMargin: the common one
   };
 
+  /// An object that a query looks at, and its state once the query is made.
+  struct Seen {
+    ObjectId object;
+    std::uint16_t state;
+  };
+
   /// What a scan finds in a part of the granules.
   struct Block {
     std::vector<ObjectId> outside;
-    std::vector<ObjectId> marked;  // to be looked at again by the next step
+    std::vector<Seen> seen;
+    std::vector<std::pair<ObjectId, BoxType>> first;  // envelopes that no query knew, and that were made anew
   };
 
   [[nodiscard]] double margin_of(double own) const {
@@ -151,6 +163,13 @@ class Envelopes {
     return slack(record.envelope, needed) > kLoose * margin_of(record.margin);
   }
 
+  /// Largest displacement of late.
+  [[nodiscard]] double largest_now() const {
+    return std::max(farthest_.load(std::memory_order_relaxed), largest_ * 7 / 8);
+  }
+  [[nodiscard]] double common_margin(double displacement) const {
+    return options_.margin + options_.margin_steps * displacement;
+  }
   void mark(ObjectId object);
   void collect_granules();
   template <class Visit>
@@ -176,6 +195,7 @@ class Envelopes {
 
   double largest_ = 0;  // displacement of late
   int age_ = 0;         // steps since the latest query
+  bool early_ = false;  // this step is a query because of a violation
   std::vector<std::uint32_t> granules_;
   std::vector<Block> blocks_;
   EnvelopeReport report_;

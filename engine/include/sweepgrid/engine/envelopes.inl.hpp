@@ -144,25 +144,71 @@ bool Envelopes<Scalar, Dim>::begin_step(Objects& objects, Executor& executor) {
   ++age_;
   report_.outside.clear();
   granules_.clear();
+  early_ = false;
   bool query = age_ >= options_.stride;
   if (marked_.load(std::memory_order_relaxed)) {
     collect_granules();
     if (!query) {
       find_outside(executor);
       if (!report_.outside.empty() && options_.on_violation == OnViolation::kQuery) {
-        query = true;
-        ++report_.early;
+        query = early_ = true;
         report_.outside.clear();
       }
     }
     if (query) renew(executor, objects);
-    report_.violations += report_.outside.size();
   }
-  if (query) {
-    age_ = 0;
-    ++report_.queries;
-  }
+  if (!query) report_.violations += report_.outside.size();
   return query;
+}
+
+template <class Scalar, int Dim>
+void Envelopes<Scalar, Dim>::end_query(Executor& executor) {
+  age_ = 0;
+  ++report_.queries;
+  report_.early += early_ ? 1 : 0;
+  report_.violations += report_.outside.size();
+  if (granules_.empty()) return;
+  largest_ = largest_now();
+  farthest_.store(0, std::memory_order_relaxed);
+  for (const std::uint32_t granule : granules_) marks_[granule] = 0;
+  marked_.store(false, std::memory_order_relaxed);
+  const auto settle_block = [this](std::size_t block) {
+    blocks_[block].first.clear();
+    for (const auto& [object, state] : blocks_[block].seen) {
+      states_[object] = state;
+      if ((state & kStretched) != 0) mark(object);
+    }
+  };
+  if (blocks_.size() == 1) {
+    settle_block(0);
+  } else {
+    executor.for_each(blocks_.size(), settle_block);
+  }
+}
+
+// What was queued with the object table stays so, but with the envelopes of the latest step.
+template <class Scalar, int Dim>
+void Envelopes<Scalar, Dim>::cancel_step(Objects& objects) {
+  --report_.steps;
+  --age_;
+  report_.outside.clear();
+  margin_ = common_margin(largest_);
+  if (granules_.empty()) return;
+  const auto put_back = [&](ObjectId object, const BoxType& envelope) {
+    records_[object].envelope = envelope;
+    objects.update({object, records_[object].generation}, envelope);
+  };
+  for (Block& block : blocks_) {
+    for (const auto& [object, envelope] : block.first) put_back(object, envelope);
+    block.first.clear();
+  }
+  for (const std::uint32_t granule : granules_) {
+    for (ObjectId object = granule * kGranule; object < (granule + 1) * kGranule; ++object) {
+      if ((states_[object] & kLive) == 0) continue;
+      if ((objects.state(object) & (Objects::kInserted | Objects::kUpdated)) != Objects::kUpdated) continue;
+      put_back(object, objects.record(object).before);
+    }
+  }
 }
 
 template <class Scalar, int Dim>
@@ -183,7 +229,8 @@ void Envelopes<Scalar, Dim>::scan(Executor& executor, Visit&& visit) {
   const auto scan_block = [&](std::size_t index) {
     Block& block = blocks_[index];
     block.outside.clear();
-    block.marked.clear();
+    block.seen.clear();
+    block.first.clear();
     for (std::size_t i = index * granules_.size() / wanted; i < (index + 1) * granules_.size() / wanted; ++i) {
       const ObjectId first = granules_[i] * kGranule;
       const std::uint16_t* const states = &states_[first];  // a granule is contiguous
@@ -217,19 +264,13 @@ void Envelopes<Scalar, Dim>::find_outside(Executor& executor) {
 // A query: queues the envelopes that it needs.
 template <class Scalar, int Dim>
 void Envelopes<Scalar, Dim>::renew(Executor& executor, Objects& objects) {
-  largest_ = std::max(farthest_.exchange(0, std::memory_order_relaxed), largest_ * 7 / 8);
-  margin_ = options_.margin + options_.margin_steps * largest_;
+  margin_ = common_margin(largest_now());
   scan(executor, [&](ObjectId object, Block& out) { renew(object, objects, out); });
-  for (const std::uint32_t granule : granules_) marks_[granule] = 0;
-  marked_.store(false, std::memory_order_relaxed);
-  for (const Block& block : blocks_) {
-    for (const ObjectId object : block.marked) mark(object);
-  }
 }
 
 template <class Scalar, int Dim>
 void Envelopes<Scalar, Dim>::renew(ObjectId object, Objects& objects, Block& out) {
-  std::uint16_t& state = states_[object];
+  const std::uint16_t state = states_[object];
   if ((state & kLive) == 0) return;
   Record& record = records_[object];
   const double margin = margin_of(record.margin);
@@ -241,14 +282,14 @@ void Envelopes<Scalar, Dim>::renew(ObjectId object, Objects& objects, Block& out
   const BoxType needed = way ? hull(record.box, others_[object]) : record.box;
   const bool lasts = options_.stride == 1 || holds(record.envelope, grown(record.box, margin / 2));
   if (!lasts || !holds(record.envelope, needed) || loose(record, needed)) {
+    if ((objects.state(object) & Objects::kInserted) != 0) out.first.emplace_back(object, record.envelope);
     record.envelope = grown(needed, margin);
     objects.update({object, record.generation}, record.envelope);
   }
-  state &= static_cast<std::uint16_t>(~(kFresh | kMoved | kStretched | kAhead | kPromised));
-  if (ahead) state |= kPromised;
-  if (!way || !loose(record, record.box)) return;
-  state |= kStretched;
-  out.marked.push_back(object);
+  int after = state & ~(kFresh | kMoved | kStretched | kAhead | kPromised);
+  if (ahead) after |= kPromised;
+  if (way && loose(record, record.box)) after |= kStretched;
+  out.seen.push_back({object, static_cast<std::uint16_t>(after)});
 }
 
 template <class Scalar, int Dim>

@@ -55,19 +55,31 @@ template <class Scalar, int Dim>
 void EngineCore<Scalar, Dim>::follow_with_counts() {
   if (gridded_ && !regrid_.outgrown(objects_.size()) && !regrid_.crowded()) return;
   const auto result = fit(sample(GridFit<Scalar, Dim>::sample_size(objects_.size())));
-  // A box over everything is in all cells, so there must not be many more of them than objects.
-  const double most_cells = config_.cell_size ? kMaxCells : kFewCells + static_cast<double>(objects_.size());
-  const auto spec = GridFit<Scalar, Dim>::bounded(result, most_cells);
+  const auto spec = bounded(result);
   if (gridded_ && !regrid_.outgrown(objects_.size()) && spec.cell_size() > 0.75 * levels_.cell_size() &&
       result.share_within(fitted_) > 0.8) {
     return regrid_.resign();
   }
+  start_single(result, spec);
+  regridding_ = true;
+}
+
+// A box over everything is in all cells, so there must not be many more of them than objects.
+template <class Scalar, int Dim>
+auto EngineCore<Scalar, Dim>::bounded(const typename GridFit<Scalar, Dim>::Result& result) const
+    -> GridSpec<Scalar, Dim> {
+  const double most_cells = config_.cell_size ? kMaxCells : kFewCells + static_cast<double>(objects_.size());
+  return GridFit<Scalar, Dim>::bounded(result, most_cells);
+}
+
+template <class Scalar, int Dim>
+void EngineCore<Scalar, Dim>::start_single(const typename GridFit<Scalar, Dim>::Result& result,
+                                           const GridSpec<Scalar, Dim>& spec) {
   fitted_ = result;
   levels_.start_single(spec, config_.cell, grid_shards());
   for (ObjectId object = 0; object < objects_.bound(); ++object) objects_.record(object).grid = levels_.finest();
   regrid_.fitted(result.met, objects_.size());
   gridded_ = true;
-  regridding_ = true;
   counters_.regrids = 1;
 }
 

@@ -140,7 +140,25 @@ class ObjectTable {
     states_[object] = 0;
     ++records_[object].generation;
   }
+  /// Throws nothing after reserve_free() for as many.
   void free_ids(std::span<const ObjectId> ids) { free_.insert(free_.end(), ids.begin(), ids.end()); }
+  void reserve_free(std::size_t ids) {
+    if (free_.size() + ids > free_.capacity()) free_.reserve(std::max(free_.size() + ids, 2 * free_.capacity()));
+  }
+
+  /// Queues again what a step that is taken back has applied to the object, retire() included: `change` is its state as
+  /// the step began.
+  void requeue(ObjectId object, std::uint8_t change) {
+    if (states_[object] == 0) --records_[object].generation;
+    states_[object] = change;
+    records_[object].changed_at = 0;
+    mark(object);
+  }
+  /// Sees to it that a step looks at the object.
+  void mark(ObjectId object) {
+    mark_granule(object / kGranule);
+    something_queued();
+  }
 
   /// To be called when nothing is queued. When few objects are left, lowers bound() below the free ids at the top and
   /// gives their memory back; returns whether it did. Handles of what lived there stay stale. O(1), seldom O(bound()).
@@ -175,10 +193,6 @@ class ObjectTable {
   [[gnu::always_inline]] void mark_granule(std::uint32_t granule) {
     const std::atomic_ref<std::uint8_t> mark(marks_[granule]);
     if (mark.load(std::memory_order_relaxed) == 0) mark.store(1, std::memory_order_relaxed);
-  }
-  void mark(ObjectId object) {
-    mark_granule(object / kGranule);
-    something_queued();
   }
   void something_queued() {
     if (!queued_.load(std::memory_order_relaxed)) queued_.store(true, std::memory_order_relaxed);

@@ -38,6 +38,7 @@ struct Stats {
   StepCounters step;   ///< the latest step
   StepCounters total;  ///< all steps so far
   std::uint64_t steps = 0;
+  std::uint64_t refused = 0;      ///< steps that Config::step_bytes did not allow; in no other figure
   std::vector<StageTime> stages;  ///< the latest step, in stage order; 0 when nothing was queued
 
   std::size_t objects = 0;

@@ -34,7 +34,7 @@ class Cell {
   [[nodiscard]] std::size_t size() const { return has_rows() ? rows_.size() : other_->cell->size(); }
   [[nodiscard]] bool has_rows() const { return !other_ || !other_->cell; }
 
-  void drain(std::span<const CellOp<Scalar, Dim>> ops, std::vector<OverlapDelta>& deltas, SapCounters& counters) {
+  void drain(std::span<const CellOp<Scalar, Dim>> ops, DeltaList& deltas, SapCounters& counters) {
     if (has_rows()) return rows_.drain(ops, deltas, counters);  // not virtual
     other_->cell->drain(ops, deltas, counters);
   }

@@ -10,6 +10,7 @@
 #include <sweepgrid/grid/cell_directory.hpp>
 #include <sweepgrid/grid/grid_spec.hpp>
 #include <sweepgrid/grid/op_queues.hpp>
+#include <sweepgrid/sap/step_budget.hpp>
 
 namespace sweepgrid {
 
@@ -22,7 +23,7 @@ struct DrainOutput {
     std::uint64_t cell;  // code
   };
 
-  std::vector<OverlapDelta> deltas;
+  DeltaList deltas;
   std::vector<Run> runs;
   std::vector<std::uint32_t> emptied;  // ids of cells that are empty now
   SapCounters counters;
@@ -69,8 +70,10 @@ class Grid {
   [[nodiscard]] const GridSpec<Scalar, Dim>& spec() const { return spec_; }
 
   /// Sets in how many blocks ops arrive. `dense`: most objects have changed, so every cell
-  /// asks for its residents' boxes by itself, and updates that stay within their cells need no call.
-  void begin_step(std::size_t blocks, bool dense);
+  /// asks for its residents' boxes by itself, and updates that stay within their cells need no call. `budget`: what
+  /// calls are charged to, kCallBytes for each; null: nothing.
+  void begin_step(std::size_t blocks, bool dense, StepBudget* budget = nullptr);
+  static constexpr std::uint64_t kCallBytes = 16;
   /// To be called before the first op of the block is routed, and after the last.
   void begin_block(std::size_t block) { ops_.begin_block(block), late_.begin_block(block); }
   void end_block(std::size_t block) { look_up(block); }
@@ -165,6 +168,7 @@ class Grid {
   CellOptions options_;
   int shard_shift_ = 64;
   bool dense_ = false;
+  StepBudget* budget_ = nullptr;
   std::vector<Shard> shards_;
   std::vector<Waiting> waiting_;  // by block
   OpQueues ops_;                  // inserts, updates, erases

@@ -18,11 +18,12 @@ Grid<Scalar, Dim>::Grid(const GridSpec<Scalar, Dim>& spec, const CellOptions& op
     : spec_(spec), options_(options), shard_shift_(64 - std::countr_zero(shards)), shards_(shards) {}
 
 template <class Scalar, int Dim>
-void Grid<Scalar, Dim>::begin_step(std::size_t blocks, bool dense) {
+void Grid<Scalar, Dim>::begin_step(std::size_t blocks, bool dense, StepBudget* budget) {
   ops_.reset(blocks, shards_.size());
   late_.reset(blocks, shards_.size());
   waiting_.resize(blocks);
   dense_ = dense;
+  budget_ = budget;
 }
 
 // ---- gather

@@ -36,6 +36,7 @@ inline void Grid<Scalar, Dim>::call_all(std::size_t block, const Range& range, O
 template <class Scalar, int Dim>
 void Grid<Scalar, Dim>::look_up(std::size_t block) {
   Waiting& waiting = waiting_[block];
+  if (budget_ != nullptr) budget_->charge(waiting.count * kCallBytes);
   static constexpr CellId kNowhere = CellDirectory<Dim>::kAbsent;
   std::array<const CellId*, std::tuple_size_v<decltype(waiting.calls)>> places;
   for (std::size_t i = 0; i < waiting.count; ++i) {

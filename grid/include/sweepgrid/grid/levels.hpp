@@ -42,6 +42,8 @@ class Levels {
   /// From now on, homes are in a new family. `shards`: of each of its grids.
   void start_family(double cell_size, const std::array<double, Dim>& origin, const CellOptions& cells,
                     std::size_t shards);
+  /// Drops all grids. Precondition of what follows: a new family, or a single grid.
+  void clear();
   /// From now on, every home is in this one grid, and there are no others.
   void start_single(const GridSpec<Scalar, Dim>& spec, const CellOptions& cells, std::size_t shards);
 

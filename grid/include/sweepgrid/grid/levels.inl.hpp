@@ -20,10 +20,17 @@ void Levels<Scalar, Dim>::start_family(double cell_size, const std::array<double
 }
 
 template <class Scalar, int Dim>
+void Levels<Scalar, Dim>::clear() {
+  grids_.clear();
+  widest_.clear();
+  live_.clear();
+  homes_ = none();
+}
+
+template <class Scalar, int Dim>
 void Levels<Scalar, Dim>::start_single(const GridSpec<Scalar, Dim>& spec, const CellOptions& cells,
                                        std::size_t shards) {
-  grids_.clear();
-  live_.clear();
+  clear();
   cell_size_ = spec.cell_size();
   cells_ = cells;
   shards_ = shards;

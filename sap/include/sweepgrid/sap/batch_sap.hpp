@@ -28,7 +28,7 @@ class BatchSap final : public SweepAndPrune<Scalar, Dim> {
   using typename Base::Op;
   using typename Base::Resident;
 
-  void drain(std::span<const Op> ops, std::vector<OverlapDelta>& deltas, SapCounters& counters) override;
+  void drain(std::span<const Op> ops, DeltaList& deltas, SapCounters& counters) override;
   /// Sorts the lists anew, O(n log n): no pair is looked at.
   void transfer(std::span<const Op> ops, SapCounters& counters) override;
   void prefetch() const override;
@@ -63,7 +63,7 @@ class BatchSap final : public SweepAndPrune<Scalar, Dim> {
 
   /// What one drain passes around.
   struct Drain {
-    std::vector<OverlapDelta>& deltas;
+    DeltaList& deltas;
     SapCounters& counters;
     std::pmr::memory_resource* memory;
   };

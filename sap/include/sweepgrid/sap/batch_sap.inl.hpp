@@ -41,7 +41,7 @@ struct BatchSap<Scalar, Dim>::Integration {
 };
 
 template <class Scalar, int Dim>
-void BatchSap<Scalar, Dim>::drain(std::span<const Op> ops, std::vector<OverlapDelta>& deltas, SapCounters& counters) {
+void BatchSap<Scalar, Dim>::drain(std::span<const Op> ops, DeltaList& deltas, SapCounters& counters) {
   DrainArena arena;
   const Ops resolved(ops, slots_, arena.resource());
   Drain drain{deltas, counters, arena.resource()};

@@ -28,7 +28,7 @@ class ClassicSap final : public SweepAndPrune<Scalar, Dim> {
   using typename SweepAndPrune<Scalar, Dim>::Op;
   using typename SweepAndPrune<Scalar, Dim>::Resident;
 
-  void drain(std::span<const Op> ops, std::vector<OverlapDelta>& deltas, SapCounters& counters) override;
+  void drain(std::span<const Op> ops, DeltaList& deltas, SapCounters& counters) override;
   [[nodiscard]] std::size_t size() const override { return slots_.size(); }
   [[nodiscard]] std::size_t bytes() const override;
   void append_residents(std::vector<Resident>& residents) const override;
@@ -47,8 +47,8 @@ class ClassicSap final : public SweepAndPrune<Scalar, Dim> {
 
   void write_axis(int axis, const Ops& ops);
   template <class Precedes>
-  void sort(int axis, Precedes precedes, std::vector<OverlapDelta>& deltas, SapCounters& counters);
-  void swapped(int axis, Key to_left, Key to_right, std::vector<OverlapDelta>& deltas, SapCounters& counters) const;
+  void sort(int axis, Precedes precedes, DeltaList& deltas, SapCounters& counters);
+  void swapped(int axis, Key to_left, Key to_right, DeltaList& deltas, SapCounters& counters) const;
   [[nodiscard]] bool erased_last(Key a, Key b) const;
   void validate_axis(int axis) const;
 
@@ -59,7 +59,7 @@ class ClassicSap final : public SweepAndPrune<Scalar, Dim> {
 };
 
 template <class Scalar, int Dim>
-void ClassicSap<Scalar, Dim>::drain(std::span<const Op> ops, std::vector<OverlapDelta>& deltas, SapCounters& counters) {
+void ClassicSap<Scalar, Dim>::drain(std::span<const Op> ops, DeltaList& deltas, SapCounters& counters) {
   DrainArena arena;
   const Ops resolved(ops, slots_, arena.resource());
   if (ops.empty()) return;
@@ -106,8 +106,7 @@ void ClassicSap<Scalar, Dim>::write_axis(int axis, const Ops& ops) {
 
 template <class Scalar, int Dim>
 template <class Precedes>
-void ClassicSap<Scalar, Dim>::sort(int axis, Precedes precedes, std::vector<OverlapDelta>& deltas,
-                                   SapCounters& counters) {
+void ClassicSap<Scalar, Dim>::sort(int axis, Precedes precedes, DeltaList& deltas, SapCounters& counters) {
   std::vector<Key>& list = lists_[axis];
   counters.endpoints_visited += list.size();
   for (std::size_t from = 1; from < list.size(); ++from) {
@@ -122,7 +121,7 @@ void ClassicSap<Scalar, Dim>::sort(int axis, Precedes precedes, std::vector<Over
 }
 
 template <class Scalar, int Dim>
-void ClassicSap<Scalar, Dim>::swapped(int axis, Key to_left, Key to_right, std::vector<OverlapDelta>& deltas,
+void ClassicSap<Scalar, Dim>::swapped(int axis, Key to_left, Key to_right, DeltaList& deltas,
                                       SapCounters& counters) const {
   ++counters.swaps;
   // The owners differ: a box's own min precedes its max before and after the sort, so the two never swap.

@@ -29,7 +29,7 @@ class RowCell final : public SweepAndPrune<Scalar, Dim> {
   using typename Base::Resident;
   using typename Base::Visit;
 
-  void drain(std::span<const Op> ops, std::vector<OverlapDelta>& deltas, SapCounters& counters) override {
+  void drain(std::span<const Op> ops, DeltaList& deltas, SapCounters& counters) override {
     if (ops.empty()) return;
     const std::size_t done = Kernels::drain(rows_, typename Kernels::Ops(ops), deltas, counters);
     if (done != ops.size()) refuse_op(ops[done]);
@@ -45,10 +45,9 @@ class RowCell final : public SweepAndPrune<Scalar, Dim> {
   /// it has now. The same as a drain() of an update for each that has changed, but nobody has to be looked up. Returns
   /// how many have.
   template <class Boxes>
-  std::size_t refresh(const Boxes& boxes, RefreshScratch& scratch, std::vector<OverlapDelta>& deltas,
-                      SapCounters& counters);
+  std::size_t refresh(const Boxes& boxes, RefreshScratch& scratch, DeltaList& deltas, SapCounters& counters);
 
-  void visit(std::span<const Visit> visits, std::vector<OverlapDelta>& deltas, SapCounters& counters) const override {
+  void visit(std::span<const Visit> visits, DeltaList& deltas, SapCounters& counters) const override {
     if (visits.empty() || rows_.size() == 0) return;
     Kernels::visit(rows_, typename Kernels::Visits(visits), deltas, counters);
   }
@@ -79,8 +78,8 @@ class RowCell final : public SweepAndPrune<Scalar, Dim> {
 
 template <class Scalar, int Dim>
 template <class Boxes>
-std::size_t RowCell<Scalar, Dim>::refresh(const Boxes& boxes, RefreshScratch& scratch,
-                                          std::vector<OverlapDelta>& deltas, SapCounters& counters) {
+std::size_t RowCell<Scalar, Dim>::refresh(const Boxes& boxes, RefreshScratch& scratch, DeltaList& deltas,
+                                          SapCounters& counters) {
   const std::uint32_t size = rows_.size();
   if (size == 0) return 0;
   if (scratch.moved.size() < size) scratch.moved.resize(size), scratch.boxes.resize(size);

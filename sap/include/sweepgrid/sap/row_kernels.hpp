@@ -7,7 +7,7 @@
 #include <type_traits>
 #include <vector>
 
-#include <sweepgrid/sap/overlap_delta.hpp>
+#include <sweepgrid/sap/delta_list.hpp>
 #include <sweepgrid/sap/row_block.hpp>
 #include <sweepgrid/sap/row_views.hpp>
 #include <sweepgrid/sap/sap_counters.hpp>
@@ -27,13 +27,13 @@ struct RowKernels {
   static constexpr bool kCompiled =
       (std::is_same_v<Bits, std::uint32_t> || std::is_same_v<Bits, std::uint64_t>)&&Dim >= 1 && Dim <= 4;
 
-  static std::size_t drain(Block& block, Ops ops, std::vector<OverlapDelta>& deltas, SapCounters& counters);
+  static std::size_t drain(Block& block, Ops ops, DeltaList& deltas, SapCounters& counters);
   static std::size_t transfer(Block& block, Ops ops);
   /// Gives every object the box that `boxes` holds at its place, Dim mins and then Dim maxes. At all places but the
   /// `moved` ones it is the box that the object has.
-  static void refresh(Block& block, const Bits* boxes, std::span<const std::uint32_t> moved,
-                      std::vector<OverlapDelta>& deltas, SapCounters& counters);
-  static void visit(const Block& block, Visits visits, std::vector<OverlapDelta>& deltas, SapCounters& counters);
+  static void refresh(Block& block, const Bits* boxes, std::span<const std::uint32_t> moved, DeltaList& deltas,
+                      SapCounters& counters);
+  static void visit(const Block& block, Visits visits, DeltaList& deltas, SapCounters& counters);
 };
 
 /// The instruction sets that this machine has kernels for, best first. For tests.

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include <sweepgrid/sap/overlap_delta.hpp>
+#include <sweepgrid/sap/delta_list.hpp>
 #include <sweepgrid/sap/row_block.hpp>
 #include <sweepgrid/sap/row_views.hpp>
 #include <sweepgrid/sap/sap_counters.hpp>
@@ -21,7 +21,7 @@ class RowScalars {
   using Ops = OpViews<Bits, Dim>;
   using Visits = VisitViews<Bits, Dim>;
 
-  static std::size_t drain(Block& block, Ops ops, std::vector<OverlapDelta>& deltas, SapCounters& counters) {
+  static std::size_t drain(Block& block, Ops ops, DeltaList& deltas, SapCounters& counters) {
     const std::size_t deltas_before = deltas.size();
     const std::size_t done =
         apply(block, ops, [&](ObjectId object, std::uint32_t own, const Bits* from, const Bits* to) {
@@ -35,8 +35,8 @@ class RowScalars {
     return apply(block, ops, [](ObjectId, std::uint32_t, const Bits*, const Bits*) {});
   }
 
-  static void refresh(Block& block, const Bits* boxes, std::span<const std::uint32_t> moved,
-                      std::vector<OverlapDelta>& deltas, SapCounters& counters) {
+  static void refresh(Block& block, const Bits* boxes, std::span<const std::uint32_t> moved, DeltaList& deltas,
+                      SapCounters& counters) {
     const std::size_t deltas_before = deltas.size();
     for (const std::uint32_t place : moved) {
       const Bits* const to = boxes + std::size_t{place} * (2 * Dim);
@@ -48,7 +48,7 @@ class RowScalars {
     counters.deltas += deltas.size() - deltas_before;
   }
 
-  static void visit(const Block& block, Visits visits, std::vector<OverlapDelta>& deltas, SapCounters& counters) {
+  static void visit(const Block& block, Visits visits, DeltaList& deltas, SapCounters& counters) {
     const std::size_t deltas_before = deltas.size();
     for (std::size_t index = 0; index < visits.size(); ++index) {
       const auto visit = visits[index];
@@ -97,7 +97,7 @@ class RowScalars {
   }
 
   static void compare(const Block& block, ObjectId object, std::uint32_t own, const Bits* from, const Bits* to,
-                      std::vector<OverlapDelta>& deltas, SapCounters& counters) {
+                      DeltaList& deltas, SapCounters& counters) {
     for (std::uint32_t place = 0; place < block.size(); ++place) {
       if (place == own) continue;
       counters.box_tests += (from != nullptr ? 1 : 0) + (to != nullptr ? 1 : 0);

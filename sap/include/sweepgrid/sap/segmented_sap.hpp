@@ -33,7 +33,7 @@ class SegmentedSap final : public SweepAndPrune<Scalar, Dim> {
   /// Throws std::invalid_argument below 4 endpoints per segment.
   explicit SegmentedSap(int segment_capacity, Integration integration = Integration::kAuto);
 
-  void drain(std::span<const Op> ops, std::vector<OverlapDelta>& deltas, SapCounters& counters) override;
+  void drain(std::span<const Op> ops, DeltaList& deltas, SapCounters& counters) override;
   void prefetch() const override;
   [[nodiscard]] std::size_t size() const override { return slots_.size(); }
   [[nodiscard]] std::size_t bytes() const override;
@@ -57,7 +57,7 @@ class SegmentedSap final : public SweepAndPrune<Scalar, Dim> {
 
   /// What one drain passes around.
   struct Drain {
-    std::vector<OverlapDelta>& deltas;
+    DeltaList& deltas;
     SapCounters& counters;
     std::pmr::memory_resource* memory;
     /// By slot, of the objects that come or go; empty when none does.

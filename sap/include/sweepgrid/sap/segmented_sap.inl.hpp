@@ -28,8 +28,7 @@ SegmentedSap<Scalar, Dim>::SegmentedSap(int segment_capacity, Integration integr
 }
 
 template <class Scalar, int Dim>
-void SegmentedSap<Scalar, Dim>::drain(std::span<const Op> ops, std::vector<OverlapDelta>& deltas,
-                                      SapCounters& counters) {
+void SegmentedSap<Scalar, Dim>::drain(std::span<const Op> ops, DeltaList& deltas, SapCounters& counters) {
   DrainArena arena;
   const Ops resolved(ops, slots_, arena.resource());
   resting_.resize(slots_.slot_bound());

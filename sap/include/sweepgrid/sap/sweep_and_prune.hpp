@@ -5,7 +5,7 @@
 #include <vector>
 
 #include <sweepgrid/sap/cell_op.hpp>
-#include <sweepgrid/sap/overlap_delta.hpp>
+#include <sweepgrid/sap/delta_list.hpp>
 #include <sweepgrid/sap/sap_counters.hpp>
 
 namespace sweepgrid {
@@ -40,12 +40,12 @@ class SweepAndPrune {
   /// deltas is its state after minus its state before. The order of `ops` and of `deltas` means nothing.
   /// Precondition: at most one op per object; an insert names an absent object, an update or erase a present one.
   /// An op that breaks the second rule throws std::invalid_argument that names the object, and nothing is applied.
-  virtual void drain(std::span<const Op> ops, std::vector<OverlapDelta>& deltas, SapCounters& counters) = 0;
+  virtual void drain(std::span<const Op> ops, DeltaList& deltas, SapCounters& counters) = 0;
 
   /// Appends how the overlap of each visitor with each resident changes. Residents stay as they are, visitors are not
   /// compared with each other, and nothing is kept. Each changed pair gives one delta.
   /// Precondition: no visitor is a resident.
-  virtual void visit(std::span<const Visit> visits, std::vector<OverlapDelta>& deltas, SapCounters& counters) const;
+  virtual void visit(std::span<const Visit> visits, DeltaList& deltas, SapCounters& counters) const;
 
   /// Inserts and erases as drain() does, with the same refusals, but reports no deltas: for objects whose pairs are
   /// known elsewhere already. Precondition: that of drain(), and no op is an update.
@@ -67,8 +67,7 @@ class SweepAndPrune {
 };
 
 template <class Scalar, int Dim>
-void SweepAndPrune<Scalar, Dim>::visit(std::span<const Visit> visits, std::vector<OverlapDelta>& deltas,
-                                       SapCounters& counters) const {
+void SweepAndPrune<Scalar, Dim>::visit(std::span<const Visit> visits, DeltaList& deltas, SapCounters& counters) const {
   if (visits.empty()) return;
   std::vector<Resident> residents;
   append_residents(residents);
@@ -86,7 +85,7 @@ void SweepAndPrune<Scalar, Dim>::visit(std::span<const Visit> visits, std::vecto
 
 template <class Scalar, int Dim>
 void SweepAndPrune<Scalar, Dim>::transfer(std::span<const Op> ops, SapCounters& counters) {
-  std::vector<OverlapDelta> unwanted;
+  DeltaList unwanted;
   drain(ops, unwanted, counters);
   counters.deltas -= unwanted.size();
 }

@@ -25,7 +25,7 @@ class SweepingPlane final : public SweepAndPrune<Scalar, Dim> {
   using typename SweepAndPrune<Scalar, Dim>::Op;
   using typename SweepAndPrune<Scalar, Dim>::Resident;
 
-  void drain(std::span<const Op> ops, std::vector<OverlapDelta>& deltas, SapCounters& counters) override;
+  void drain(std::span<const Op> ops, DeltaList& deltas, SapCounters& counters) override;
   [[nodiscard]] std::size_t size() const override { return slots_.size(); }
   [[nodiscard]] std::size_t bytes() const override {
     return slots_.bytes() + boxes_.capacity() * sizeof(boxes_[0]) + overlaps_.capacity() * sizeof(PairKey);
@@ -45,8 +45,7 @@ class SweepingPlane final : public SweepAndPrune<Scalar, Dim> {
 };
 
 template <class Scalar, int Dim>
-void SweepingPlane<Scalar, Dim>::drain(std::span<const Op> ops, std::vector<OverlapDelta>& deltas,
-                                       SapCounters& counters) {
+void SweepingPlane<Scalar, Dim>::drain(std::span<const Op> ops, DeltaList& deltas, SapCounters& counters) {
   DrainArena arena;
   const ResolvedOps<Scalar, Dim> resolved(ops, slots_, arena.resource());
   if (ops.empty()) return;
