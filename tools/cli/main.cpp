@@ -1,5 +1,5 @@
-// The `sweepgrid` program. Exit status: 0 all is well, 1 a verification failed or an invariant is broken, 2 bad usage,
-// file or scene, 130 a study was interrupted.
+// The `sweepgrid` program. Exit status: 0 all is well, 1 a verification failed, an invariant is broken or no
+// configuration meets a demand, 2 bad usage, file or scene, 130 a study was interrupted.
 
 #include <charconv>
 #include <cmath>
@@ -19,6 +19,7 @@
 #include "cli/info_command.hpp"
 #include "cli/run_command.hpp"
 #include "cli/study_command.hpp"
+#include "cli/tune_command.hpp"
 #include "scenes/generator_params.hpp"
 #include "setup/setup_json.hpp"
 #include "study/study_options.hpp"
@@ -143,15 +144,17 @@ int run_main(int argc, char** argv) {
   CLI::App app("Exact, event-based broad-phase collision detection, run over scenes");
   app.set_version_flag("--version", version_text());
   app.require_subcommand(1);
-  app.footer(generator_help() +
-             "Exit status: 0 all is well, 1 a verification failed, 2 bad usage, file or scene, "
-             "130 a study was interrupted.");
+  app.footer(
+      generator_help() +
+      "Exit status: 0 all is well, 1 a verification failed or a demand cannot be met, 2 bad usage, file or scene, "
+      "130 a study was interrupted.");
   RunOptions run_options;
   RunTexts run_texts;
   const CLI::App* run = add_run(app, run_options, run_texts);
   InfoOptions info_options;
   CLI::App* info = app.add_subcommand("info", "Read scenes to their end and describe them");
   add_scene_options(*info, info_options);
+  const TuneCommand tune(app);
   const StudyCommand study(app);
   try {
     app.parse(argc, argv);
@@ -160,6 +163,7 @@ int run_main(int argc, char** argv) {
     return app.exit(error) == 0 ? kWell : kBadInput;
   }
   if (study.parsed()) return study.run() ? kWell : kNotVerified;
+  if (tune.parsed()) return tune.run() ? kWell : kNotVerified;
   check_scenes(run->parsed() ? run_options.scenes : info_options.scenes);
   if (run->parsed()) {
     if (!run_options.config_path.empty()) run_options.setup = read_setup(run_options.config_path);
