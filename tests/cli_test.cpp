@@ -370,6 +370,56 @@ TEST_F(Program, RefusesASetupThatIsNoneAndNamesWhy) {
   EXPECT_EQ(run("run uniform:n=10 --threads 2 --config '" + directory_.path("setup.json") + "'").status, 0);
 }
 
+TEST_F(Program, RunsWhatItHasTunedAndFindsThePromiseKept) {
+  const std::string setup = "'" + directory_.path("setup.json") + "'";
+  const std::pair<std::string, std::string> cases[] = {
+      {"pile:n=300,moving=1,layers=1,density=0.3,steps=20", ""},
+      {"resting:n=300,steps=20,density=0.2", "--extra 0"},
+      {"far:n=300,steps=20,density=0.2,offset=1e8", "--missed 0 --threads 2"},
+      {"fast:n=300,steps=20,density=0.2", "--truth T1"},
+      {"turning:n=300,steps=20,churn=0.01", "--truth T2 --extra 90%"},
+      {"uniform:n=300,steps=20,dim=2,density=0.2", "--missed 5%"},
+      {std::string(SWEEPGRID_RECORDINGS) + "/lammps_pour_2200.lammpstrj.xz", "--steps 8 --extra 0.5"}};
+  for (const auto& [scene, demand] : cases) {
+    const Result tuned = run("tune '" + scene + "' --narrow-cost 50 --json " + setup + " " + demand);
+    EXPECT_EQ(tuned.status, 0) << scene << tuned.err;
+    EXPECT_NE(tuned.out.find("  guarantee "), std::string::npos) << tuned.out;
+    const Result result = run("run --verify --json - --steps 20 --config " + setup + " '" + scene + "'");
+    EXPECT_EQ(result.status, 0) << scene << result.err;
+    const nlohmann::json found = nlohmann::json::parse(result.out).at("scenes").at(0).at("verification");
+    if (demand.starts_with("--missed 5%")) continue;
+    EXPECT_NE(found.at("promised"), "may miss") << scene;
+    EXPECT_EQ(found.at("missing"), 0) << scene;
+    if (demand == "--extra 0") {
+      EXPECT_EQ(found.at("extra"), 0) << scene;
+    }
+  }
+}
+
+TEST_F(Program, SaysWhenNothingMeetsADemand) {
+  const Result none = run("tune fast:n=100,steps=10 --truth T1 --extra 0 --narrow-cost 50");
+  EXPECT_EQ(none.status, 1);
+  EXPECT_NE(none.err.find("no configuration meets the demand"), std::string::npos) << none.err;
+  EXPECT_NE(none.err.find("nearest: "), std::string::npos) << none.err;
+  EXPECT_EQ(none.out, "");
+  const std::pair<std::string, std::string> cases[] = {
+      {"tune", "SCENE is required"},
+      {"tune absent.aabbs --narrow-cost 1", "absent.aabbs"},
+      {"tune uniform:n=10,steps=0 --narrow-cost 1", "there is no step after the start"},
+      {"tune bad:n=100,steps=20 --narrow-cost 1", "is not finite, or has min > max"},
+      {"tune uniform:n=10 --truth T3", "--truth"},
+      {"tune uniform:n=10 --missed 2", "--missed: '2' is no part"},
+      {"tune uniform:n=10 --extra five", "--extra: 'five' is no part"},
+      {"tune uniform:n=10 --narrow-cost -1", "--narrow-cost"},
+      {"tune uniform:n=10 --steps 0", "--steps"},
+      {"tune uniform:n=10 --json /absent/t.json", "cannot write /absent/t.json"}};
+  for (const auto& [arguments, reason] : cases) {
+    const Result result = run(arguments);
+    EXPECT_EQ(result.status, 2) << arguments;
+    EXPECT_NE(result.err.find(reason), std::string::npos) << arguments << "\n" << result.err;
+  }
+}
+
 TEST_F(Program, DescribesScenes) {
   const Result result = run("info '" + std::string(SWEEPGRID_RECORDINGS) + "/bullet_towers_4000.aabbs.xz'");
   EXPECT_EQ(result.status, 0);
