@@ -358,6 +358,7 @@ TEST_F(Program, RefusesASetupThatIsNoneAndNamesWhy) {
       {R"({"scalar": "int32", "quantizer": {"origin": [1, 2]}})", "quantizer::origin is [1,2]"},
       {R"({"scalar": "int32", "quantizer": {"step": 1}})", "quantizer has no member 'step'"},
       {R"({"config": {"threads": -1}})", "Config::threads is -1"},
+      {R"({"config": {"step_bytes": 10}})", "step 0: the step takes more memory for its lists than step_bytes"},
   };
   for (const auto& [setup, reason] : cases) {
     const Result result = run("run uniform:n=10 --config '" + directory_.write("setup.json", setup) + "'");

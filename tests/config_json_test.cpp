@@ -24,6 +24,7 @@ Config3 changed_everywhere() {
   config.cell_population = 7;
   config.reduction = Reduction::kWitnessCounts;
   config.envelope = EnvelopeOptions{1.0 / 3, 2.5, false, 4, OnViolation::kQuery, true};
+  config.step_bytes = 10'000'000'000;
   config.threads = 3;
   return config;
 }
@@ -43,10 +44,11 @@ TEST(ConfigJson, TellsEveryMember) {
     "cell_size": 0.1, "cell_population": 7, "reduction": "counts",
     "envelope": {"margin": 0.3333333333333333, "margin_steps": 2.5, "swept": false, "stride": 4,
                  "on_violation": "query", "exact": true},
-    "threads": 3})"));
+    "step_bytes": 10000000000, "threads": 3})"));
   EXPECT_EQ(Json(Config3{}), Json::parse(R"({
     "cell": {"kind": "auto", "segment_capacity": 32, "integration": "auto"},
-    "cell_size": null, "cell_population": null, "reduction": "reporter", "envelope": null, "threads": 0})"));
+    "cell_size": null, "cell_population": null, "reduction": "reporter", "envelope": null, "step_bytes": null,
+    "threads": 0})"));
 }
 
 TEST(ConfigJson, ComesBackAsItWas) {
@@ -86,6 +88,7 @@ TEST(ConfigJson, RefusesWhatItDoesNotKnowAndNamesIt) {
       {R"({"cell_population": 2.5})", "Config::cell_population is 2.5"},
       {R"({"cell_population": 4294967297})", "Config::cell_population is 4294967297"},
       {R"({"cell_population": 18446744073709551615})", "Config::cell_population is 18446744073709551615"},
+      {R"({"step_bytes": -1})", "Config::step_bytes is -1, but must be a whole number of at least 0"},
       {R"({"threads": -1})", "Config::threads is -1, but must be a whole number of at least 0"},
       {R"({"threads": null})", "Config::threads is null"},
       {R"({"reduction": "sum"})", "Config::reduction is \"sum\", but must be one of \"reporter\", \"counts\""},

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <limits>
+#include <stdexcept>
 #include <string>
 #include <unordered_map>
 
@@ -65,6 +66,8 @@ class SceneRun {
     } catch (const InvariantError& error) {
       broken_ = fmt::format("step {}: {}", result_.steps, error.what());
       return false;
+    } catch (const std::length_error& error) {
+      throw std::runtime_error(fmt::format("{}: step {}: {}", scene_.name, result_.steps, error.what()));
     }
   }
 

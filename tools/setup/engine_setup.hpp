@@ -22,6 +22,7 @@ template <class Scalar, int Dim>
   result.cell_population = config.cell_population;
   result.reduction = config.reduction;
   result.envelope = config.envelope;
+  result.step_bytes = config.step_bytes;
   result.executor = config.executor;
   result.threads = config.threads;
   return result;

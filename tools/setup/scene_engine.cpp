@@ -1,6 +1,7 @@
 #include "setup/scene_engine.hpp"
 
 #include <cstdint>
+#include <stdexcept>
 
 #include <sweepgrid/engine/engine.hpp>
 
@@ -32,7 +33,13 @@ class TypedSceneEngine final : public SceneEngine {
     return made;
   }
 
-  const Events<SceneKey>& step() override { return engine_.step(); }
+  const Events<SceneKey>& step() override {
+    const Events<SceneKey>& events = engine_.step();
+    if (engine_.status() == StepStatus::kOverBudget) {
+      throw std::length_error("the step takes more memory for its lists than step_bytes of the configuration allows");
+    }
+    return events;
+  }
 
   void as_taken(std::vector<SceneBox>& boxes) const override {
     for (SceneBox& box : boxes) box = widen_box<Scalar, Dim>(convert_(box));

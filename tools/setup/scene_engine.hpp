@@ -27,6 +27,7 @@ class SceneEngine {
   /// Throws what Engine's calls throw.
   virtual std::vector<Handle> queue(std::span<const Handle> erased, std::span<const SceneKey> inserted,
                                     std::span<const Handle> updated) = 0;
+  /// Throws std::length_error when the engine refuses the step: a scene must not be played with a step left out.
   virtual const Events<SceneKey>& step() = 0;
 
   /// Writes over boxes what became of them: in the engine's units, axes that it has not being [0, 0].

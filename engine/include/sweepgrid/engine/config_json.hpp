@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <utility>
 
 #include <nlohmann/json.hpp>
@@ -94,6 +95,7 @@ void to_json(BasicJson& json, const Config<Scalar, Dim>& config) {
           {"cell_population", json_members::optional_json<BasicJson>(config.cell_population)},
           {"reduction", json_members::name_of(config.reduction)},
           {"envelope", json_members::optional_json<BasicJson>(config.envelope)},
+          {"step_bytes", json_members::optional_json<BasicJson>(config.step_bytes)},
           {"threads", config.threads}};
 }
 
@@ -107,6 +109,7 @@ void from_json(const BasicJson& json, Config<Scalar, Dim>& config) {
   members.read("cell_population", read.cell_population, 1);
   members.read("reduction", read.reduction);
   members.read("envelope", read.envelope);
+  members.read("step_bytes", read.step_bytes, std::uint64_t{0});
   members.read("threads", read.threads, 0);
   members.finish();
   config = std::move(read);

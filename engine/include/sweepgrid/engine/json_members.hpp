@@ -52,15 +52,19 @@ class JsonMembers {
     }
   }
   /// A whole number, at least `least`.
-  void read(const char* name, int& value, int least) {
+  template <class Integer>
+  requires std::is_integral_v<Integer>
+  void read(const char* name, Integer& value, Integer least) {
     const BasicJson* found = find(name);
     if (found == nullptr) return;
-    const auto fits = [&](auto number) { return std::in_range<int>(number) && static_cast<int>(number) >= least; };
+    const auto fits = [&](auto number) {
+      return std::in_range<Integer>(number) && static_cast<Integer>(number) >= least;
+    };
     const bool good = found->is_number_unsigned()  ? fits(found->template get<std::uint64_t>())
                       : found->is_number_integer() ? fits(found->template get<std::int64_t>())
                                                    : false;
     if (!good) refuse(name, *found, "a whole number of at least " + std::to_string(least));
-    value = found->template get<int>();
+    value = found->template get<Integer>();
   }
   /// A finite number, not negative; or, without `zero_too`, positive.
   void read(const char* name, double& value, bool zero_too) {
