@@ -23,9 +23,15 @@ class Tuner {
     current_ = {space_.axes[0], space_.doors[0], {}, space_.cells[0]};
     drop_what_promises_too_little();
     choose(space_.doors, &Candidate::door);
-    choose(worthwhile_axes(), &Candidate::axes);
-    choose(worthwhile_envelopes(), &Candidate::envelope);
     choose(space_.cells, &Candidate::cells);
+    space_.axes = worthwhile_axes();
+    space_.envelopes = worthwhile_envelopes();
+    choose_rest();
+    // What was best with the other choices as they were then need not be with those that were made since.
+    swaps_.clear();
+    choose(space_.doors, &Candidate::door);
+    choose(space_.cells, &Candidate::cells);
+    choose_rest();
     try_runners_up();
     const Contender& best = contest_.decide();
     if (!met(best.trial, demand_)) {
@@ -100,6 +106,11 @@ class Tuner {
     if (second == nullptr || contest_.total_ms(*second) > kClose * contest_.total_ms(contest_.of(current_))) return;
     const Candidate runner_up = second->candidate;
     swaps_.push_back([member, value = runner_up.*member](Candidate& candidate) { candidate.*member = value; });
+  }
+
+  void choose_rest() {
+    choose(space_.axes, &Candidate::axes);
+    choose(space_.envelopes, &Candidate::envelope);
   }
 
   // Choices are made one after the other, but what is best of one may depend on a later one.

@@ -34,8 +34,8 @@ struct TuneResult {
   std::vector<Rejection> rejected;
 };
 
-/// Finds the cheapest candidate for the demand by choosing numbers, axes, envelopes and cells one after the other, and
-/// trying the runners-up of each together at last. What facts rule out is not measured. Throws DemandNotMet.
+/// Finds the cheapest candidate for the demand by choosing numbers, cells, axes and envelopes one after the other,
+/// twice, and trying the runners-up of each together at last. What facts rule out is not measured. Throws DemandNotMet.
 [[nodiscard]] TuneResult tune(const SceneSample& sample, const SceneFacts& facts, const Demand& demand,
                               const PlayRound& play);
 
