@@ -16,24 +16,11 @@
 
 #include "engine_model.hpp"
 #include "op_script.hpp"
+#include "sanitized.hpp"
 #include "scene_script.hpp"
 
 /// Engines beside the brute-force oracle: the settings to try, the ways to queue one and the same step, and the play.
 namespace sweepgrid::oracle {
-
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define SWEEPGRID_ORACLE_SANITIZED 1
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-#define SWEEPGRID_ORACLE_SANITIZED 1
-#endif
-#endif
-#ifdef SWEEPGRID_ORACLE_SANITIZED
-/// Sanitizers make everything about ten times as slow, so the matrices are thinned out there.
-inline constexpr bool kSanitized = true;
-#else
-inline constexpr bool kSanitized = false;
-#endif
 
 /// Ways to queue the same ops.
 enum class Calls { kByKey, kByHandle, kBulk, kFourThreads };
