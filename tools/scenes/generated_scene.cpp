@@ -208,10 +208,12 @@ void GeneratedScene::advance(Slot& slot) const {
     const double room = world_[axis] - slot.width;
     double low = slot.low[axis] + slot.velocity[axis];
     if (low < 0 || low > room) {
-      low = low < 0 ? -low : 2 * room - low;
-      slot.velocity[axis] = -slot.velocity[axis];
+      // Back and forth between the walls, as often as the step is longer than the room.
+      const double way = room > 0 ? std::fmod(std::abs(low), 2 * room) : 0;
+      if ((low < 0) != (way > room)) slot.velocity[axis] = -slot.velocity[axis];
+      low = way > room ? 2 * room - way : way;
     }
-    slot.low[axis] = std::clamp(low, 0.0, room);  // for steps longer than the room
+    slot.low[axis] = std::clamp(low, 0.0, room);  // against rounding
   }
 }
 
