@@ -307,16 +307,17 @@ struct Kernels {
     return ops.size();
   }
 
-  static void visit(const Block& block, Visits visits, DeltaList& deltas, SapCounters& counters) {
+  static void visit(const Block& block, const Bits* boxes, Visits visits, DeltaList& deltas, SapCounters& counters) {
     Scratch scratch(visits.size());
     const std::size_t deltas_before = deltas.size();
     for (std::uint32_t first = 0; first < block.size(); first += kLanes) {
-      const Box boxes = Box::load(block, first);
+      const Box old_boxes = Box::load(block, first);
+      const Box new_boxes = boxes == nullptr ? old_boxes : arriving(block, boxes, first);
       const Lanes has_box = lanes_below(first, block.size());
       for (std::size_t index = 0; index < visits.size(); ++index) {
         const auto visit = visits[index];
-        const Lanes was = boxes.overlaps(Box::everywhere(visit.before())) & (visit.was() ? has_box : 0);
-        const Lanes is = boxes.overlaps(Box::everywhere(visit.after())) & (visit.is() ? has_box : 0);
+        const Lanes was = old_boxes.overlaps(Box::everywhere(visit.before())) & (visit.was() ? has_box : 0);
+        const Lanes is = new_boxes.overlaps(Box::everywhere(visit.after())) & (visit.is() ? has_box : 0);
         scratch.hits(index) = (was ^ is) | is << 16;
       }
       report(scratch, visits, block.ids() + first, deltas);
@@ -345,9 +346,9 @@ struct Kernels {
                                std::span<const std::uint32_t> moved, DeltaList& deltas, SapCounters& counters) {       \
     Kernels<std::uint##WIDTH##_t, DIM>::refresh(block, boxes, moved, deltas, counters);                                \
   }                                                                                                                    \
-  void visit_##WIDTH##_##DIM(const RowBlock<std::uint##WIDTH##_t, DIM>& block,                                         \
+  void visit_##WIDTH##_##DIM(const RowBlock<std::uint##WIDTH##_t, DIM>& block, const std::uint##WIDTH##_t* boxes,      \
                              VisitViews<std::uint##WIDTH##_t, DIM> visits, DeltaList& deltas, SapCounters& counters) { \
-    Kernels<std::uint##WIDTH##_t, DIM>::visit(block, visits, deltas, counters);                                        \
+    Kernels<std::uint##WIDTH##_t, DIM>::visit(block, boxes, visits, deltas, counters);                                 \
   }
 SWEEPGRID_ALL_ROW_KERNELS
 #undef SWEEPGRID_ROW_KERNELS
@@ -379,9 +380,9 @@ namespace sweepgrid {
     HWY_DYNAMIC_DISPATCH(refresh_##WIDTH##_##DIM)(block, boxes, moved, deltas, counters);                      \
   }                                                                                                            \
   template <>                                                                                                  \
-  void RowKernels<std::uint##WIDTH##_t, DIM>::visit(const Block& block, Visits visits, DeltaList& deltas,      \
-                                                    SapCounters& counters) {                                   \
-    HWY_DYNAMIC_DISPATCH(visit_##WIDTH##_##DIM)(block, visits, deltas, counters);                              \
+  void RowKernels<std::uint##WIDTH##_t, DIM>::visit(const Block& block, const std::uint##WIDTH##_t* boxes,     \
+                                                    Visits visits, DeltaList& deltas, SapCounters& counters) { \
+    HWY_DYNAMIC_DISPATCH(visit_##WIDTH##_##DIM)(block, boxes, visits, deltas, counters);                       \
   }
 SWEEPGRID_ALL_ROW_KERNELS
 #undef SWEEPGRID_ROW_KERNELS

@@ -33,7 +33,8 @@ struct DrainOutput {
   std::vector<typename SweepAndPrune<Scalar, Dim>::Resident> residents;
   typename RowCell<Scalar, Dim>::RefreshScratch refresh;
   std::vector<typename SweepAndPrune<Scalar, Dim>::Visit> visits;
-  std::vector<typename SweepAndPrune<Scalar, Dim>::Visit> late_visits;
+  std::vector<typename SweepAndPrune<Scalar, Dim>::Visit> sides;
+  std::vector<CellOp<Scalar, Dim>> passing;
 
   void clear() {
     deltas.clear();
@@ -158,11 +159,15 @@ class Grid {
   template <class Boxes>
   std::size_t apply_ops(CellType& cell, const Boxes& boxes, Output& out) const;
   template <class Boxes>
-  static std::size_t apply_dense(CellType& cell, const Boxes& boxes, Output& out);
+  static void ask_residents(const CellType& cell, const Boxes& boxes, Output& out);
   template <class Boxes>
   static void take_visits(std::span<const Call> calls, const Boxes& boxes, Output& out);
   template <class Boxes>
   std::size_t drain_visited(CellType& cell, std::span<const Call> calls, const Boxes& boxes, Output& out) const;
+  template <class Boxes>
+  static std::size_t refresh_visited(CellType& cell, const Boxes& boxes, Output& out);
+  using Visits = std::vector<typename SweepAndPrune<Scalar, Dim>::Visit>;
+  static const Visits& sides(const Visits& visits, bool were, Output& out);
 
   GridSpec<Scalar, Dim> spec_;
   CellOptions options_;

@@ -172,7 +172,11 @@ std::size_t Grid<Scalar, Dim>::apply_ops(CellType& cell, const Boxes& boxes, Out
     cell.drain(out.ops, out.deltas, out.counters);
     return out.ops.size();
   }
-  if (!cell.has_rows()) return apply_dense(cell, boxes, out);
+  if (!cell.has_rows()) {
+    ask_residents(cell, boxes, out);
+    cell.drain(out.ops, out.deltas, out.counters);
+    return out.ops.size();
+  }
   // What goes has its old box, like those that stay; what comes meets the new ones. So each pair still changes once.
   const auto inserts =
       std::partition(out.ops.begin(), out.ops.end(), [](const auto& op) { return op.kind == OpKind::kErase; });
@@ -184,10 +188,10 @@ std::size_t Grid<Scalar, Dim>::apply_ops(CellType& cell, const Boxes& boxes, Out
   return out.ops.size() + updates;
 }
 
-// The same for kinds that do not ask for boxes themselves.
+// Adds the updates of a dense step, for kinds that do not ask for boxes themselves.
 template <class Scalar, int Dim>
 template <class Boxes>
-std::size_t Grid<Scalar, Dim>::apply_dense(CellType& cell, const Boxes& boxes, Output& out) {
+void Grid<Scalar, Dim>::ask_residents(const CellType& cell, const Boxes& boxes, Output& out) {
   out.residents.clear();
   cell.kind().append_residents(out.residents);
   const std::size_t called = out.ops.size();
@@ -202,8 +206,6 @@ std::size_t Grid<Scalar, Dim>::apply_dense(CellType& cell, const Boxes& boxes, O
     if (!boxes.changed(object) || is_called()) continue;
     out.ops.push_back({object, OpKind::kUpdate, OrderedBox<Scalar, Dim>(boxes.after(object))});
   }
-  cell.drain(out.ops, out.deltas, out.counters);
-  return out.ops.size();
 }
 
 // Calls after the ops: visits and transfers, with boxes.
@@ -212,7 +214,6 @@ template <class Boxes>
 void Grid<Scalar, Dim>::take_visits(std::span<const Call> calls, const Boxes& boxes, Output& out) {
   using Ordered = OrderedBox<Scalar, Dim>;
   out.visits.clear();
-  out.late_visits.clear();
   out.transfers.clear();
   for (const auto& [object, call] : calls) {
     if (call >= CellCall::kAttach) {
@@ -231,29 +232,68 @@ void Grid<Scalar, Dim>::take_visits(std::span<const Call> calls, const Boxes& bo
 }
 
 // Visitors meet residents as they were with the box that they had, and residents as they are with the box that they
-// have. Where residents rest, both at once, which leaves out pairs that go on. Returns how many ops there were.
+// have; those that stay both at once, which leaves out pairs that go on. Returns how many ops there were.
 template <class Scalar, int Dim>
 template <class Boxes>
 std::size_t Grid<Scalar, Dim>::drain_visited(CellType& cell, std::span<const Call> calls, const Boxes& boxes,
                                              Output& out) const {
   take_visits(calls, boxes, out);
   std::size_t ops = 0;
-  if (out.ops.empty() && !dense_) {
-    cell.kind().visit(out.visits, out.deltas, out.counters);
+  if (cell.has_rows() && (dense_ || !out.ops.empty())) {
+    ops = refresh_visited(cell, boxes, out);
   } else {
-    for (auto& visit : out.visits) {
-      if (!visit.is) continue;
-      out.late_visits.push_back(visit);
-      out.late_visits.back().was = false;
-      visit.is = false;
+    if (dense_) ask_residents(cell, boxes, out);
+    ops = out.ops.size();
+    if (ops == 0) {
+      cell.kind().visit(out.visits, out.deltas, out.counters);
+    } else {
+      cell.kind().visit(sides(out.visits, true, out), out.deltas, out.counters);
+      cell.drain(out.ops, out.deltas, out.counters);
+      cell.kind().visit(sides(out.visits, false, out), out.deltas, out.counters);
     }
-    std::erase_if(out.visits, [](const auto& visit) { return !visit.was; });
-    cell.kind().visit(out.visits, out.deltas, out.counters);
-    ops = apply_ops(cell, boxes, out);
-    cell.kind().visit(out.late_visits, out.deltas, out.counters);
   }
   if (!out.transfers.empty()) cell.kind().transfer(out.transfers, out.counters);
   return ops;
+}
+
+// Who goes is met as it was, who comes as it is; each in rows of its own.
+template <class Scalar, int Dim>
+template <class Boxes>
+std::size_t Grid<Scalar, Dim>::refresh_visited(CellType& cell, const Boxes& boxes, Output& out) {
+  const auto stays =
+      std::partition(out.ops.begin(), out.ops.end(), [](const auto& op) { return op.kind == OpKind::kErase; });
+  const auto comes = std::partition(stays, out.ops.end(), [](const auto& op) { return op.kind == OpKind::kUpdate; });
+  const std::span<const CellOp<Scalar, Dim>> goers(out.ops.begin(), stays);
+  const std::span<const CellOp<Scalar, Dim>> comers(comes, out.ops.end());
+  const auto meet = [&](std::span<const CellOp<Scalar, Dim>> ops, bool were) {
+    if (ops.empty()) return;
+    out.passing.clear();
+    for (const auto& op : ops) {
+      out.passing.push_back(
+          {op.object, OpKind::kInsert, were ? OrderedBox<Scalar, Dim>(boxes.before(op.object)) : op.box});
+    }
+    RowCell<Scalar, Dim> rows;
+    rows.transfer(out.passing, out.counters);
+    rows.visit(sides(out.visits, were, out), out.deltas, out.counters);
+  };
+  meet(goers, true);
+  cell.drain(goers, out.deltas, out.counters);
+  const std::size_t updates = cell.rows().refresh(boxes, out.refresh, out.deltas, out.counters, out.visits);
+  cell.drain(comers, out.deltas, out.counters);
+  meet(comers, false);
+  return goers.size() + updates + comers.size();
+}
+
+// Visits with one of their sides only, the box that they had or the one that they have.
+template <class Scalar, int Dim>
+auto Grid<Scalar, Dim>::sides(const Visits& visits, bool were, Output& out) -> const Visits& {
+  out.sides.clear();
+  for (const auto& visit : visits) {
+    if (!(were ? visit.was : visit.is)) continue;
+    out.sides.push_back(visit);
+    (were ? out.sides.back().is : out.sides.back().was) = false;
+  }
+  return out.sides;
 }
 
 template <class Scalar, int Dim>

@@ -43,13 +43,15 @@ class RowCell final : public SweepAndPrune<Scalar, Dim> {
 
   /// Asks for the boxes of all residents: `boxes` tells whether one has changed(object), and the box after(object) that
   /// it has now. The same as a drain() of an update for each that has changed, but nobody has to be looked up. Returns
-  /// how many have.
+  /// how many have. `visits` are of objects that come by meanwhile: each pair of theirs that changes gives one delta,
+  /// whoever of the two has moved.
   template <class Boxes>
-  std::size_t refresh(const Boxes& boxes, RefreshScratch& scratch, DeltaList& deltas, SapCounters& counters);
+  std::size_t refresh(const Boxes& boxes, RefreshScratch& scratch, DeltaList& deltas, SapCounters& counters,
+                      std::span<const Visit> visits = {});
 
   void visit(std::span<const Visit> visits, DeltaList& deltas, SapCounters& counters) const override {
     if (visits.empty() || rows_.size() == 0) return;
-    Kernels::visit(rows_, typename Kernels::Visits(visits), deltas, counters);
+    Kernels::visit(rows_, nullptr, typename Kernels::Visits(visits), deltas, counters);
   }
 
   void transfer(std::span<const Op> ops, SapCounters& /*counters*/) override {
@@ -79,7 +81,7 @@ class RowCell final : public SweepAndPrune<Scalar, Dim> {
 template <class Scalar, int Dim>
 template <class Boxes>
 std::size_t RowCell<Scalar, Dim>::refresh(const Boxes& boxes, RefreshScratch& scratch, DeltaList& deltas,
-                                          SapCounters& counters) {
+                                          SapCounters& counters, std::span<const Visit> visits) {
   const std::uint32_t size = rows_.size();
   if (size == 0) return 0;
   if (scratch.moved.size() < size) scratch.moved.resize(size), scratch.boxes.resize(size);
@@ -93,7 +95,11 @@ std::size_t RowCell<Scalar, Dim>::refresh(const Boxes& boxes, RefreshScratch& sc
     count += boxes.changed(ids[place]) ? 1 : 0;  // no branch on what cannot be foretold
   }
   static_assert(sizeof(*now) == 2 * Dim * sizeof(Bits));
-  if (count != 0) Kernels::refresh(rows_, now->min.data(), {moved, count}, deltas, counters);
+  const Bits* const bits = now->min.data();
+  if (!visits.empty()) {
+    Kernels::visit(rows_, count != 0 ? bits : nullptr, typename Kernels::Visits(visits), deltas, counters);
+  }
+  if (count != 0) Kernels::refresh(rows_, bits, {moved, count}, deltas, counters);
   return count;
 }
 

@@ -33,7 +33,9 @@ struct RowKernels {
   /// `moved` ones it is the box that the object has.
   static void refresh(Block& block, const Bits* boxes, std::span<const std::uint32_t> moved, DeltaList& deltas,
                       SapCounters& counters);
-  static void visit(const Block& block, Visits visits, DeltaList& deltas, SapCounters& counters);
+  /// `boxes` as for refresh(): visitors meet residents as they are with the box that they had, and with the box that
+  /// they have as residents will be after it. Null: residents rest.
+  static void visit(const Block& block, const Bits* boxes, Visits visits, DeltaList& deltas, SapCounters& counters);
 };
 
 /// The instruction sets that this machine has kernels for, best first. For tests.

@@ -48,12 +48,18 @@ class RowScalars {
     counters.deltas += deltas.size() - deltas_before;
   }
 
-  static void visit(const Block& block, Visits visits, DeltaList& deltas, SapCounters& counters) {
+  static void visit(const Block& block, const Bits* boxes, Visits visits, DeltaList& deltas, SapCounters& counters) {
     const std::size_t deltas_before = deltas.size();
     for (std::size_t index = 0; index < visits.size(); ++index) {
       const auto visit = visits[index];
-      compare(block, visit.object(), block.size(), visit.was() ? visit.before() : nullptr,
-              visit.is() ? visit.after() : nullptr, deltas, counters);
+      for (std::uint32_t place = 0; place < block.size(); ++place) {
+        const Bits* const now = boxes == nullptr ? nullptr : boxes + std::size_t{place} * (2 * Dim);
+        const bool was = visit.was() && overlap(block, place, visit.before());
+        const bool is =
+            visit.is() && (now == nullptr ? overlap(block, place, visit.after()) : overlap(now, visit.after()));
+        counters.box_tests += (visit.was() ? 1 : 0) + (visit.is() ? 1 : 0);
+        if (was != is) deltas.push_back({PairKey(visit.object(), block.ids()[place]), is ? +1 : -1});
+      }
     }
     counters.deltas += deltas.size() - deltas_before;
   }
@@ -92,6 +98,13 @@ class RowScalars {
   static bool overlap(const Block& block, std::uint32_t place, const Bits* box) {
     for (int axis = 0; axis < Dim; ++axis) {
       if (block.bits(axis, place) > box[Dim + axis] || box[axis] > block.bits(Dim + axis, place)) return false;
+    }
+    return true;
+  }
+
+  static bool overlap(const Bits* a, const Bits* b) {
+    for (int axis = 0; axis < Dim; ++axis) {
+      if (a[axis] > b[Dim + axis] || b[axis] > a[Dim + axis]) return false;
     }
     return true;
   }
