@@ -5,16 +5,18 @@
 namespace sweepgrid::accuracy {
 namespace {
 
-// All objects move: at rest nothing is hard.
-constexpr std::string_view kAllMove = "uniform:moving=1";
-constexpr std::string_view kCalm = "uniform:moving=1,churn=0";
+// All objects move, because at rest nothing is hard; slowly, so that a step resembles the one before.
+constexpr std::string_view kCalm = "uniform:moving=1,churn=0,speed=0.01";
 
 std::string calm_but(std::string_view parameters) { return fmt::format("{},{}", kCalm, parameters); }
+
+// Of another speed.
+std::string moving_but(std::string_view parameters) { return fmt::format("uniform:moving=1,churn=0,{}", parameters); }
 
 std::vector<Regime> make_regimes() {
   const std::vector<std::string> shares = {"0", "0.01", "0.1", "0.5", "1"};
   return {
-      {"speed", "Fast objects", "widths per step", calm_but("speed={}"), {"0.1", "1", "10", "100"}},
+      {"speed", "Fast objects", "widths per step", moving_but("speed={}"), {"0.01", "0.1", "1", "10", "100"}},
       {"teleport", "Teleporting objects", "part that jumps per step", calm_but("teleport={}"), shares},
       {"wall",
        "Aligned on x",
@@ -41,19 +43,19 @@ std::vector<Regime> make_regimes() {
       {"lattice",
        "Touching lattices and ties",
        "boxes lie at multiples of so many widths",
-       calm_but("density=0.3,speed=1,snap={}"),
+       moving_but("density=0.3,speed=1,snap={}"),
        {"0", "1/64", "1/8", "1/2", "1"}},
       {"thin", "Without thickness", "thickness in widths", calm_but("thin={}"), {"1", "0.1", "0.01", "0"}},
-      {"churn", "Coming and going", "part that is replaced per step", fmt::format("{},churn={{}}", kAllMove), shares},
+      {"churn", "Coming and going", "part that is replaced per step", "uniform:moving=1,speed=0.01,churn={}", shares},
       {"crossing",
        "To and fro over borders",
        "widths to and fro in each step",
-       calm_but("cross=1/16,speed={}"),
+       moving_but("cross=1/16,speed={}"),
        {"0.01", "0.1", "1", "4", "16"}},
       {"point",
        "All at one point",
        "deviation from the point, in edges of the world",
-       calm_but("clusters=1,speed=0.001,spread={}"),
+       moving_but("clusters=1,speed=0.001,spread={}"),
        {"0.3", "0.1", "0.03", "0.01", "0"}},
       {"limits", "Limits of float", "width of an object", calm_but("width={}"), {"1", "1e10", "1e20", "1e30", "1e36"}},
       {"tiny", "Small numbers", "width of an object", calm_but("width={}"), {"1", "1e-10", "1e-20", "1e-30"}},
