@@ -66,8 +66,8 @@ TEST(StabilityReport, HasAMapForEveryRegimeAndATileForEveryTrial) {
     }
   }
   for (const auto& row : report.sections[0].tables.at(0).rows) {
-    EXPECT_EQ(row[5].text, "nowhere");
-    EXPECT_EQ(row[6].text, "nowhere");
+    EXPECT_EQ(row[7].text, "nowhere");
+    EXPECT_EQ(row[8].text, "nowhere");
   }
 }
 
@@ -87,15 +87,51 @@ TEST(StabilityReport, NamesTheWorstCostAndTheFirstOfEachFailure) {
   const std::vector<Cell>& row = row_of(report, "octree");
   EXPECT_EQ(row[3].number, 30);
   EXPECT_EQ(row[4].text, "speed=100");
-  EXPECT_EQ(row[5].text, "speed (30)");
-  EXPECT_EQ(row[6].text, "misses from far=1e7; memory from point=0");
-  EXPECT_EQ(row_of(report, "engine")[6].text, "nowhere");
+  EXPECT_EQ(row[7].text, "speed (30)");
+  EXPECT_EQ(row[8].text, "misses from far=1e7; memory from point=0");
+  EXPECT_EQ(row_of(report, "engine")[8].text, "nowhere");
   const Tile& missing = tile_of(map_of(report, "far"), "octree", "1e8");
   EXPECT_EQ(missing.mark, "miss");
   EXPECT_NE(missing.label.find("3 of 10 pairs missed"), std::string::npos);
   const Tile& out = tile_of(map_of(report, "point"), "octree", "0");
   EXPECT_EQ(out.mark, "mem");
   EXPECT_FALSE(out.value.has_value());
+}
+
+TEST(StabilityReport, CrowdsStandApart) {
+  StabilityResults results = calm_results();
+  Trial crowd = exact_trial(80);
+  crowd.true_pairs = crowd.steps * 2000 * 2000 / 4;
+  results.hard["point=0"]["octree"] = crowd;
+  results.hard["speed=100"]["octree"] = exact_trial(20);
+  const Report report = stability_report({}, results, false);
+  const std::vector<Cell>& row = row_of(report, "octree");
+  EXPECT_EQ(row[3].number, 40);
+  EXPECT_EQ(row[4].text, "point=0");
+  EXPECT_EQ(row[5].number, 10);
+  EXPECT_EQ(row[6].text, "speed=100");
+}
+
+TEST(StabilityReport, ShowsGrowthRelativeToAsManyCalmObjects) {
+  StabilityResults results = calm_results();
+  for (const std::uint64_t objects : {100, 200}) {
+    for (const accuracy::Method& method : growing_methods()) {
+      auto& trials = results.growing[objects];
+      trials[calm_name()][method.name] = exact_trial(static_cast<double>(objects));
+      for (const accuracy::Regime& regime : growing_regimes()) {
+        Trial& trial = trials[point_name(regime, regime.values.back())][method.name];
+        if (objects == 100) trial = exact_trial(700);
+      }
+    }
+  }
+  const Report report = stability_report({}, results, false);
+  const std::vector<LineChart>& charts = report.sections.at(2).charts;
+  ASSERT_EQ(charts.size(), growing_regimes().size());
+  for (const Series& series : charts[0].series) {
+    ASSERT_EQ(series.points.size(), 1U) << series.name;  // nothing is shown where nothing was measured
+    EXPECT_EQ(series.points[0].x, 100);
+    EXPECT_EQ(series.points[0].y, 7);
+  }
 }
 
 TEST(StabilityReport, ASupersetIsNoFailureOfWhoClaimsNoMore) {
@@ -105,8 +141,8 @@ TEST(StabilityReport, ASupersetIsNoFailureOfWhoClaimsNoMore) {
     results.hard["far=1e8"][method].verdict = Verdict::kSuperset;
   }
   const Report report = stability_report({}, results, false);
-  EXPECT_EQ(row_of(report, "bullet/axis16")[6].text, "nowhere");
-  EXPECT_EQ(row_of(report, "bullet/dbvt")[6].text, "superset from far=1e8");
+  EXPECT_EQ(row_of(report, "bullet/axis16")[8].text, "nowhere");
+  EXPECT_EQ(row_of(report, "bullet/dbvt")[8].text, "superset from far=1e8");
 }
 
 TEST(StabilityStudy, WritesAReportOfTrialsThatWereMade) {
@@ -116,11 +152,12 @@ TEST(StabilityStudy, WritesAReportOfTrialsThatWereMade) {
   StudyOptions options;
   options.out = testing::TempDir() + "stability_study";
   options.points = Points::kFresh;
-  EXPECT_TRUE(stability_study(options, {30, 2, {std::uint64_t{1} << 29, 10}}));
+  EXPECT_TRUE(stability_study(options, {30, 2, {std::uint64_t{1} << 29, 10}, {20, 40}, 2}));
   std::ifstream file(std::filesystem::path(options.out) / "study-stability.json");
   const nlohmann::json json = nlohmann::json::parse(file);
   EXPECT_EQ(json.at("study"), "stability");
-  EXPECT_EQ(json.at("sections").size(), 2U);
+  EXPECT_EQ(json.at("sections").size(), 3U);
+  EXPECT_EQ(json.at("sections")[2].at("charts")[0].at("series")[0].at("points").size(), 2U);
   std::filesystem::remove_all(options.out);
 }
 

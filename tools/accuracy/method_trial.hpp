@@ -54,8 +54,9 @@ struct Trial {
   std::uint64_t peak_bytes = 0;  ///< most resident memory of the process, the script included
 };
 
-/// Plays the script in a guarded process and compares the pairs of every step. A trial ends after the step that takes
-/// it over half of the time of `budget`, and tells what it came to; it counts as out of time unless that was the last.
+/// Plays the script in a guarded process and compares the pairs of every step. The time of `budget` is that of the
+/// method's own steps: a trial ends after the step that takes it over half of it, and tells what it came to; it counts
+/// as out of time unless that was the last. The process, comparisons included, may take four times as long.
 [[nodiscard]] Trial try_method(const Method& method, const KnownScript& known, const RunBudget& budget);
 
 /// Every field by its name, the verdict by verdict_name(); and back.

@@ -66,9 +66,21 @@ FloatBox world_of(const SceneScript& script) {
   return world;
 }
 
+// The most objects that there are at any time; in a step, some go before others come.
+std::uint32_t most_at_once(const SceneScript& script) {
+  std::size_t now = 0;
+  std::size_t most = 0;
+  for (const ScriptStep& step : script.steps) {
+    now += step.inserted.size();
+    now -= step.erased.size();
+    most = std::max(most, now);
+  }
+  return static_cast<std::uint32_t>(most);
+}
+
 Method axis_sweep(const char* name, const char* about, baselines::AxisSweepBits bits) {
   return {name, about, Claim::kSuperset, false, [bits](const SceneScript& script) {
-            return baselines::make_bullet_axis_sweep(bits, world_of(script), script.objects);
+            return baselines::make_bullet_axis_sweep(bits, world_of(script), script.objects, most_at_once(script));
           }};
 }
 #endif

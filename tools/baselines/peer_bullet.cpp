@@ -114,9 +114,9 @@ template <class Broadphase>
 class AxisSweepSystem final : public BulletSystem<Broadphase> {
  public:
   template <class Count>
-  AxisSweepSystem(const FloatBox& world, Count objects)
+  AxisSweepSystem(const FloatBox& world, std::uint32_t objects, Count at_once)
       // Without the tree for rays that it would keep beside.
-      : BulletSystem<Broadphase>(objects, vector(world.min), vector(world.max), objects, nullptr, true) {}
+      : BulletSystem<Broadphase>(objects, vector(world.min), vector(world.max), at_once, nullptr, true) {}
 
  protected:
   void move(btBroadphaseProxy* proxy, const btVector3& min, const btVector3& max) override {
@@ -128,12 +128,13 @@ class AxisSweepSystem final : public BulletSystem<Broadphase> {
 
 std::unique_ptr<System> make_bullet(std::uint32_t objects) { return std::make_unique<DbvtSystem>(objects); }
 
-std::unique_ptr<System> make_bullet_axis_sweep(AxisSweepBits bits, const FloatBox& world, std::uint32_t objects) {
-  if (bits == AxisSweepBits::k32) return std::make_unique<AxisSweepSystem<bt32BitAxisSweep3>>(world, objects);
-  if (objects > kMostObjectsOfAxisSweep16) {
+std::unique_ptr<System> make_bullet_axis_sweep(AxisSweepBits bits, const FloatBox& world, std::uint32_t objects,
+                                               std::uint32_t at_once) {
+  if (bits == AxisSweepBits::k32) return std::make_unique<AxisSweepSystem<bt32BitAxisSweep3>>(world, objects, at_once);
+  if (at_once > kMostObjectsOfAxisSweep16) {
     throw std::length_error("btAxisSweep3 takes " + std::to_string(kMostObjectsOfAxisSweep16) + " objects at most");
   }
-  return std::make_unique<AxisSweepSystem<btAxisSweep3>>(world, static_cast<unsigned short>(objects));
+  return std::make_unique<AxisSweepSystem<btAxisSweep3>>(world, objects, static_cast<unsigned short>(at_once));
 }
 
 }  // namespace sweepgrid::baselines

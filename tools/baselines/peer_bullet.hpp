@@ -20,9 +20,10 @@ enum class AxisSweepBits { k16, k32 };
 inline constexpr std::uint32_t kMostObjectsOfAxisSweep16 = 32766;
 
 /// btAxisSweep3 or bt32BitAxisSweep3: coordinates are whole numbers within a world that is given beforehand. Boxes grow
-/// outward when they are rounded, and are pressed to its border when they lie outside: superset only.
+/// outward when they are rounded, and are pressed to its border when they lie outside: superset only. `objects`: their
+/// numbers are below; `at_once`: how many there are at most at any time.
 /// Throws std::length_error for more objects than it can have.
 [[nodiscard]] std::unique_ptr<System> make_bullet_axis_sweep(AxisSweepBits bits, const FloatBox& world,
-                                                             std::uint32_t objects);
+                                                             std::uint32_t objects, std::uint32_t at_once);
 
 }  // namespace sweepgrid::baselines

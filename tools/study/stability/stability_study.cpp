@@ -1,6 +1,7 @@
 #include "study/stability/stability_study.hpp"
 
 #include <cstdio>
+#include <map>
 #include <utility>
 #include <vector>
 
@@ -20,29 +21,50 @@ using accuracy::Method;
 using accuracy::Regime;
 using accuracy::Verdict;
 
-constexpr const char* kCalm = "calm";
-
-// All methods in one scene, in turn.
-nlohmann::json try_all(const std::string& scene, const StabilitySize& size) {
-  const accuracy::KnownScript known = accuracy::know_script(scene, size.steps);
+// The methods in one scene, in turn.
+nlohmann::json try_all(const std::vector<Method>& methods, const std::string& scene, std::uint64_t steps,
+                       const accuracy::RunBudget& budget) {
+  const accuracy::KnownScript known = accuracy::know_script(scene, steps);
   nlohmann::json trials = nlohmann::json::object();
-  for (const Method& method : accuracy::methods()) {
-    trials[method.name] = trial_json(accuracy::try_method(method, known, size.budget));
+  for (const Method& method : methods) {
+    trials[method.name] = trial_json(accuracy::try_method(method, known, budget));
   }
   return trials;
 }
 
+std::string growing_key(const std::string& scene, std::uint64_t objects) {
+  return fmt::format("{} of {}", scene, objects);
+}
+
+void add_growing_points(const StabilitySize& size, std::vector<StudyPoint>& points) {
+  for (const std::uint64_t objects : size.growing) {
+    const std::uint64_t steps = size.growing_steps;
+    const auto add = [&points, &size, objects, steps](const std::string& name, const std::string& scene) {
+      points.push_back({growing_key(name, objects), 1e-7 * static_cast<double>(objects * objects),
+                        [&size, scene, steps] { return try_all(growing_methods(), scene, steps, size.budget); }});
+    };
+    add(calm_name(), accuracy::calm_scene(objects, steps));
+    for (const Regime& regime : growing_regimes()) {
+      add(point_name(regime, regime.values.back()), scene_at(regime, regime.values.back(), objects, steps));
+    }
+  }
+}
+
 std::vector<StudyPoint> study_points(const StabilitySize& size) {
   std::vector<StudyPoint> points;
-  points.push_back({kCalm, 1, [&size] { return try_all(accuracy::calm_scene(size.objects, size.steps), size); }});
+  const auto add = [&](const std::string& name, double cost, const std::string& scene) {
+    points.push_back(
+        {name, cost, [&size, scene] { return try_all(accuracy::methods(), scene, size.steps, size.budget); }});
+  };
+  add(calm_name(), 1, accuracy::calm_scene(size.objects, size.steps));
   for (const Regime& regime : accuracy::regimes()) {
     for (std::size_t i = 0; i < regime.values.size(); ++i) {
       const std::string& value = regime.values[i];
       // What is hard takes longer.
-      points.push_back({regime.id + "=" + value, 1 + static_cast<double>(i),
-                        [&] { return try_all(scene_at(regime, value, size.objects, size.steps), size); }});
+      add(point_name(regime, value), 1 + static_cast<double>(i), scene_at(regime, value, size.objects, size.steps));
     }
   }
+  add_growing_points(size, points);
   return points;
 }
 
@@ -64,11 +86,55 @@ bool engine_is_exact(const SceneTrials& trials) {
   return true;
 }
 
+// The results, and whether the engine was exact in all of them.
+std::pair<StabilityResults, bool> collect(const StabilitySize& size, const std::vector<StudyPoint>& points,
+                                          const PointStore& store) {
+  StabilityResults results;
+  bool exact = true;
+  std::map<std::string, SceneTrials> rest;
+  for (const StudyPoint& point : points) {
+    rest[point.key] = trials_of(*store.find(point.key));
+    exact = exact && engine_is_exact(rest[point.key]);
+  }
+  const auto take = [&rest](const std::string& key) { return std::move(rest.extract(key).mapped()); };
+  results.calm = take(calm_name());
+  for (const std::uint64_t objects : size.growing) {
+    auto& trials = results.growing[objects];
+    trials[calm_name()] = take(growing_key(calm_name(), objects));
+    for (const Regime& regime : growing_regimes()) {
+      const std::string name = point_name(regime, regime.values.back());
+      trials[name] = take(growing_key(name, objects));
+    }
+  }
+  results.hard = std::move(rest);
+  return {std::move(results), exact};
+}
+
 }  // namespace
+
+std::string calm_name() { return "calm"; }
+
+std::string point_name(const Regime& regime, const std::string& value) { return regime.id + "=" + value; }
+
+std::vector<Regime> growing_regimes() {
+  std::vector<Regime> some;
+  for (const Regime& regime : accuracy::regimes()) {
+    if (regime.id == "speed" || regime.id == "teleport" || regime.id == "churn") some.push_back(regime);
+  }
+  return some;
+}
+
+std::vector<Method> growing_methods() {
+  std::vector<Method> some;
+  for (const char* name : {"cell/classic", "cell/batch", "engine", "octree", "bullet/dbvt", "bullet/axis32"}) {
+    if (const auto method = accuracy::find_method(name)) some.push_back(*method);
+  }
+  return some;
+}
 
 StabilitySize StabilitySize::of(bool quick) {
   StabilitySize size;
-  if (quick) size = {800, 10, {std::uint64_t{1} << 30, 2}};
+  if (quick) size = {800, 10, {std::uint64_t{1} << 30, 2}, {250, 500, 1000, 2000}, 4};
   return size;
 }
 
@@ -76,19 +142,14 @@ bool stability_study(const StudyOptions& options) { return stability_study(optio
 
 bool stability_study(const StudyOptions& options, const StabilitySize& size) {
   const std::filesystem::path folder = make_out_folder(options);
-  const nlohmann::json parameters = {
-      {"objects", size.objects}, {"steps", size.steps}, {"bytes", size.budget.bytes}, {"seconds", size.budget.seconds}};
+  const nlohmann::json parameters = {{"objects", size.objects},    {"steps", size.steps},
+                                     {"bytes", size.budget.bytes}, {"seconds", size.budget.seconds},
+                                     {"growing", size.growing},    {"growing_steps", size.growing_steps}};
   PointStore store(folder, Fingerprint::here("stability", parameters), options.points);
   for (const std::string& note : store.notes()) fmt::print(stderr, "{}\n", note);
   const std::vector<StudyPoint> points = study_points(size);
   measure_points("study stability", points, store);
-  StabilityResults results;
-  bool exact = true;
-  for (const StudyPoint& point : points) {
-    SceneTrials trials = trials_of(*store.find(point.key));
-    exact = exact && engine_is_exact(trials);
-    (point.key == kCalm ? results.calm : results.hard[point.key]) = std::move(trials);
-  }
+  const auto [results, exact] = collect(size, points, store);
   const ReportFiles files = write_report(stability_report(size, results, options.quick), folder);
   fmt::print("{}\n", files.json.string());
   if (!files.html.empty()) fmt::print("{}\n", files.html.string());
