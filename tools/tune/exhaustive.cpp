@@ -58,13 +58,17 @@ class Search {
             continue;
           }
           measure(candidate);
-          // Superset of what any envelope on these axes leaves, unless that misses pairs or filters them.
-          const bool fewest = !envelope && door == Door::kDouble && entries_.size() == before + 1;
+          // What any other envelope leaves on these axes is a superset of this, or misses pairs, too.
+          const bool fewest = tight(envelope) && door == Door::kDouble && entries_.size() == before + 1;
           hopeless = fewest && narrow_alone(entries_.back().trial) > least_total_;
         }
       }
     }
     result_.ruled_out += skipped;
+  }
+
+  static bool tight(const EnvelopeChoice& envelope) {
+    return !envelope || (envelope->margin <= 0 && envelope->margin_steps <= 0 && envelope->stride == 1);
   }
 
   void measure(const Candidate& candidate) {
