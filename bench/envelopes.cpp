@@ -50,7 +50,7 @@ std::vector<Box<float, 3>> rounded(const std::vector<SceneBox>& boxes) {
 }
 
 Outcome play(const std::vector<Step>& steps, const Setting& setting, int threads) {
-  Config<float, 3> config;
+  Config config;
   config.threads = threads;
   config.envelope = setting.options;
   SceneEngine engine(config);

@@ -78,7 +78,7 @@ class Traffic {
 };
 
 /// Mean nanoseconds per update of whole steps after the start.
-double engine_ns_per_update(const Config<float, 3>& config, const SceneScript& script) {
+double engine_ns_per_update(const Config& config, const SceneScript& script) {
   EngineSystem system(config, false, script.objects);
   double seconds = 0;
   std::size_t changes = 0;
@@ -93,7 +93,7 @@ double engine_ns_per_update(const Config<float, 3>& config, const SceneScript& s
   return 1e9 * seconds / static_cast<double>(changes);
 }
 
-Json figures(std::uint64_t objects, double moving, int rounds, const Config<float, 3>& config) {
+Json figures(std::uint64_t objects, double moving, int rounds, const Config& config) {
   constexpr std::uint64_t kSteps = 10;
   const SceneScript script = read_script(fmt::format("uniform:n={},moving={},churn=0", objects, moving), kSteps);
   std::vector<double> copies, scatters, gathers, engines, ratios;

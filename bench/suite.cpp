@@ -43,7 +43,7 @@ double timed_step(EngineSystem& system, const ScriptStep& changes) {
   return stopwatch.seconds();
 }
 
-void play(benchmark::State& state, const SceneScript& script, const Config<float, 3>& config) {
+void play(benchmark::State& state, const SceneScript& script, const Config& config) {
   double start_seconds = 0;
   double seconds = 0;
   std::uint64_t changes = 0;

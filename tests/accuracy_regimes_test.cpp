@@ -71,8 +71,8 @@ class Play {
   }
 
  private:
-  static Config<Scalar, Dim> on_one_thread() {
-    Config<Scalar, Dim> config;
+  static Config on_one_thread() {
+    Config config;
     config.threads = 1;
     return config;
   }

@@ -25,8 +25,8 @@ using Box2 = Box<float, 2>;
 
 constexpr std::size_t kMany = 60'000;  // enough for bulk calls to use workers
 
-Config<float, 2> with_threads(int threads) {
-  Config<float, 2> config;
+Config with_threads(int threads) {
+  Config config;
   config.threads = threads;
   return config;
 }

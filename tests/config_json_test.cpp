@@ -14,11 +14,10 @@ namespace sweepgrid {
 namespace {
 
 using Json = nlohmann::json;
-using Config3 = Config<float, 3>;
 
 // Every member has another value than its default.
-Config3 changed_everywhere() {
-  Config3 config;
+Config changed_everywhere() {
+  Config config;
   config.cell = {CellKind::kSegmented, 8, Integration::kPresorted};
   config.cell_size = 0.1;
   config.cell_population = 7;
@@ -31,7 +30,7 @@ Config3 changed_everywhere() {
 
 std::string refusal(const std::string& text) {
   try {
-    static_cast<void>(Json::parse(text).get<Config3>());
+    static_cast<void>(Json::parse(text).get<Config>());
   } catch (const std::invalid_argument& error) {
     return error.what();
   }
@@ -45,31 +44,30 @@ TEST(ConfigJson, TellsEveryMember) {
     "envelope": {"margin": 0.3333333333333333, "margin_steps": 2.5, "swept": false, "stride": 4,
                  "on_violation": "query", "exact": true},
     "step_bytes": 10000000000, "threads": 3})"));
-  EXPECT_EQ(Json(Config3{}), Json::parse(R"({
+  EXPECT_EQ(Json(Config{}), Json::parse(R"({
     "cell": {"kind": "auto", "segment_capacity": 32, "integration": "auto"},
     "cell_size": null, "cell_population": null, "reduction": "reporter", "envelope": null, "step_bytes": null,
     "threads": 0})"));
 }
 
 TEST(ConfigJson, ComesBackAsItWas) {
-  for (const Config3& config : {changed_everywhere(), Config3{}}) {
+  for (const Config& config : {changed_everywhere(), Config{}}) {
     const Json json = config;
-    EXPECT_EQ(Json(Json::parse(json.dump()).get<Config3>()), json);
-    EXPECT_EQ(Json(json.get<Config<std::int16_t, 2>>()), json) << "of another type";
-    EXPECT_EQ(Json(nlohmann::ordered_json(config).get<Config3>()), json) << "in order";
+    EXPECT_EQ(Json(Json::parse(json.dump()).get<Config>()), json);
+    EXPECT_EQ(Json(nlohmann::ordered_json(config).get<Config>()), json) << "in order";
   }
-  const Config3 back = Json(changed_everywhere()).get<Config3>();
+  const Config back = Json(changed_everywhere()).get<Config>();
   EXPECT_EQ(back.envelope->margin, 1.0 / 3) << "to the last bit";
   EXPECT_TRUE(back.envelope->exact);
 }
 
 TEST(ConfigJson, WhatIsAbsentHasItsDefault) {
-  Config3 config = changed_everywhere();
+  Config config = changed_everywhere();
   config.executor = make_executor(1);
   const std::shared_ptr<Executor> executor = config.executor;
   Json::parse(R"({"envelope": {"margin": 2}})").get_to(config);
   EXPECT_EQ(config.executor, executor) << "an executor has no JSON";
-  Config3 expected;
+  Config expected;
   expected.envelope = EnvelopeOptions{.margin = 2};
   EXPECT_EQ(Json(config), Json(expected));
   const Engine<float, 3> engine(config);
@@ -120,7 +118,7 @@ TEST(ConfigJson, RefusesWhatItDoesNotKnowAndNamesIt) {
 }
 
 TEST(ConfigJson, ARefusalChangesNothing) {
-  Config3 config = changed_everywhere();
+  Config config = changed_everywhere();
   const Json before = config;
   EXPECT_THROW(Json::parse(R"({"threads": 1, "cell_population": 0})").get_to(config), std::invalid_argument);
   EXPECT_EQ(Json(config), before);

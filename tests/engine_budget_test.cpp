@@ -40,8 +40,8 @@ std::string report_difference(const EnvelopeReport& expected, const EnvelopeRepo
 /// Plays a script with a limit that changes from step to step beside an engine without one, which steps only when the
 /// limited one does; says what was wrong and when.
 template <class Scalar, int Dim>
-std::string play_limited(const Config<Scalar, Dim>& config, SceneScript<Scalar, Dim> script, int steps,
-                         std::uint64_t seed, Heard& heard) {
+std::string play_limited(const Config& config, SceneScript<Scalar, Dim> script, int steps, std::uint64_t seed,
+                         Heard& heard) {
   Engine<Scalar, Dim> limited(config);
   Engine<Scalar, Dim> free(config);
   Random random(seed);
@@ -126,7 +126,7 @@ Counts play_all(const SceneRegime& regime) {
       for (const Reduction reduction : kReductions) {
         ++turn;
         if (kSanitized && turn % 5 != 0) continue;
-        auto config = kGrids[2].template config<Scalar, Dim>(kind, make_executor(1), reduction);
+        auto config = kGrids[2].template config<Dim>(kind, make_executor(1), reduction);
         if (reduction == Reduction::kSingleReporter) config.cell_population.reset();
         config.envelope = envelope;
         Heard heard;
@@ -174,7 +174,7 @@ std::vector<Handle> insert_crowd(Engine2& engine) {
 }
 
 TEST(Budget, ACrowdAtOnePointIsRefusedLongBeforeItsPairsAreListed) {
-  Config2 config = serial();
+  Config config = serial();
   config.step_bytes = 1 << 20;
   Engine2 engine(config);
   const auto crowd = insert_crowd(engine);
@@ -197,7 +197,7 @@ TEST(Budget, GoesThroughOnceTheLimitIsRaised) {
   free.step();
   const StepCounters& step = free.stats().step;
   const std::uint64_t needed = 16 * step.cell_ops + 16 * step.cells.deltas + (8 + 2 * 16) * kCrowdPairs;
-  Config2 config = serial();
+  Config config = serial();
   config.step_bytes = 1 << 20;
   Engine2 engine(config);
   insert_crowd(engine);
@@ -212,7 +212,7 @@ TEST(Budget, GoesThroughOnceTheLimitIsRaised) {
 }
 
 TEST(Budget, OfCallsStopsWideBoxesThatVisitManyCells) {
-  Config2 config = serial();
+  Config config = serial();
   config.step_bytes = 1 << 20;
   Engine2 engine(config);
   for (std::uint64_t key = 0; key < 4000; ++key) {

@@ -17,14 +17,13 @@ namespace sweepgrid {
 
 using Engine2 = Engine<float, 2>;
 using Box2 = Box<float, 2>;
-using Config2 = Config<float, 2>;
 using Pairs = std::vector<Pair<std::uint64_t>>;
 
 inline constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 inline constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-inline Config2 serial() {
-  Config2 config;
+inline Config serial() {
+  Config config;
   config.threads = 1;
   return config;
 }

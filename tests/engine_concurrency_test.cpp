@@ -16,7 +16,7 @@ TEST(EngineConcurrency, QueueingFromManyThreadsIsTheSameAsFromOne) {
   constexpr std::uint64_t kWorkers = 8;
   constexpr std::uint64_t kEach = oracle::kSanitized ? 150 : 400;
   for (const int threads : {1, 3}) {
-    Config2 config;
+    Config config;
     config.threads = threads;
     Engine2 engine(config);
     oracle::EngineModel<float, 2> model;

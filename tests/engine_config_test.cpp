@@ -11,31 +11,31 @@ namespace sweepgrid {
 namespace {
 
 TEST(EngineConfig, RefusesWhatIsOutOfRangeAndNamesIt) {
-  const auto refused = [](const std::function<void(Config2&)>& change) {
-    Config2 config = serial();
+  const auto refused = [](const std::function<void(Config&)>& change) {
+    Config config = serial();
     change(config);
     return refusal([&] { Engine2 engine(config); });
   };
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double infinity = std::numeric_limits<double>::infinity();
   for (const int population : {0, -1, std::numeric_limits<int>::min()}) {
-    EXPECT_TRUE(has(refused([&](Config2& c) { c.cell_population = population; }), "cell_population"));
+    EXPECT_TRUE(has(refused([&](Config& c) { c.cell_population = population; }), "cell_population"));
   }
   for (const double size : {0.0, -0.0, -1.0, nan, infinity, -infinity}) {
-    EXPECT_TRUE(has(refused([&](Config2& c) { c.cell_size = size; }), "cell_size"));
+    EXPECT_TRUE(has(refused([&](Config& c) { c.cell_size = size; }), "cell_size"));
   }
-  EXPECT_TRUE(has(refused([](Config2& c) { c.threads = -1; }), "threads"));
-  EXPECT_TRUE(has(refused([](Config2& c) {
+  EXPECT_TRUE(has(refused([](Config& c) { c.threads = -1; }), "threads"));
+  EXPECT_TRUE(has(refused([](Config& c) {
                     c.cell.kind = CellKind::kSegmented;
                     c.cell.segment_capacity = 3;
                   }),
                   "segment_capacity"));
-  EXPECT_TRUE(has(refused([](Config2& c) { c.cell.kind = static_cast<CellKind>(17); }), "kind"));
+  EXPECT_TRUE(has(refused([](Config& c) { c.cell.kind = static_cast<CellKind>(17); }), "kind"));
 }
 
 TEST(EngineConfig, AGivenCellSizeIsKeptButForBoundedGridsOfTooManyCells) {
   for (const Reduction reduction : {Reduction::kSingleReporter, Reduction::kWitnessCounts}) {
-    Config2 config = serial();
+    Config config = serial();
     config.cell_size = 1e-9;
     config.reduction = reduction;
     Engine2 engine(config);
@@ -52,7 +52,7 @@ TEST(EngineConfig, AGivenCellSizeIsKeptButForBoundedGridsOfTooManyCells) {
 }
 
 TEST(EngineConfig, AnExecutorMayServeManyEngines) {
-  Config2 config;
+  Config config;
   config.executor = make_executor(3);
   Engine2 first(config);
   Engine2 second(config);
@@ -70,7 +70,7 @@ TEST(EngineConfig, AnExecutorMayServeManyEngines) {
 
 TEST(EngineConfig, ScenesOfEveryScaleWork) {
   for (const double unit : {5e-324, 1e-300, 1e-200, 1e-30, 1e30, 1e200, 1e307}) {
-    Config<double, 2> config;
+    Config config;
     config.threads = 1;
     config.cell_population = 1;
     Engine<double, 2> engine(config);

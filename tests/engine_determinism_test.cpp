@@ -37,7 +37,7 @@ void queue_inserts_first(Engine<float, 2>& engine, const Ops& ops, std::uint64_t
   queue(engine, shuffled(rest, seed), seed % 2 == 0 ? Calls::kByHandle : Calls::kFourThreads);
 }
 
-Record run(const std::vector<Ops>& steps, const Config<float, 2>& config, Calls calls = Calls::kByKey) {
+Record run(const std::vector<Ops>& steps, const Config& config, Calls calls = Calls::kByKey) {
   Engine<float, 2> engine(config);
   Record record;
   for (const Ops& ops : steps) {
@@ -64,7 +64,7 @@ class EngineDeterminism : public ::testing::TestWithParam<SceneRegime> {
 };
 
 TEST_P(EngineDeterminism, EventsAreTheSameForAllThreadsCellsAndGrids) {
-  const Stream expected = run(steps_, kGrids[0].config<float, 2>(CellKind::kPlane, make_serial_executor())).events;
+  const Stream expected = run(steps_, kGrids[0].config<2>(CellKind::kPlane, make_serial_executor())).events;
   std::size_t turn = 0;
   for (const int threads : kThreadCounts) {
     if (kSanitized && threads == 2) continue;
@@ -74,7 +74,7 @@ TEST_P(EngineDeterminism, EventsAreTheSameForAllThreadsCellsAndGrids) {
         if (kSanitized && (k + static_cast<std::size_t>(threads)) % 3 != 0) continue;
         const Reduction reduction = kReductions[turn++ % 2];
         if (!grid.suits(GetParam().place, reduction)) continue;
-        const Record other = run(steps_, grid.config<float, 2>(kKinds[k], executor, reduction));
+        const Record other = run(steps_, grid.config<2>(kKinds[k], executor, reduction));
         EXPECT_EQ(first_difference(expected, other.events), -1)
             << threads << " threads, " << kKindNames[k] << ", " << grid.name;
       }
@@ -84,7 +84,7 @@ TEST_P(EngineDeterminism, EventsAreTheSameForAllThreadsCellsAndGrids) {
 
 TEST_P(EngineDeterminism, EventsAreTheSameForEveryOrderOfCalls) {
   const auto executor = make_executor(3);
-  const auto config = kGrids[1].config<float, 2>(CellKind::kRows, executor);
+  const auto config = kGrids[1].config<2>(CellKind::kRows, executor);
   const Stream expected = run(steps_, config).events;
   for (std::uint64_t seed = 0; seed < (kSanitized ? 4 : 12); ++seed) {
     std::vector<Ops> other;
@@ -100,7 +100,7 @@ TEST_P(EngineDeterminism, CountersAreTheSameForAllThreads) {
       const Reduction reduction = kReductions[(k + g) % 2];
       if (!kGrids[g].suits(GetParam().place, reduction)) continue;
       const auto config = [&](int threads) {
-        return kGrids[g].config<float, 2>(kKinds[k], make_executor(threads), reduction);
+        return kGrids[g].config<2>(kKinds[k], make_executor(threads), reduction);
       };
       const Record expected = run(steps_, config(1));
       for (const int threads : {2, 3, 8}) {
@@ -113,7 +113,7 @@ TEST_P(EngineDeterminism, CountersAreTheSameForAllThreads) {
 }
 
 TEST_P(EngineDeterminism, CountersOfASceneAreTheSameWhenRunTwice) {
-  const auto config = kGrids[1].config<float, 2>(CellKind::kSegmented, make_executor(8));
+  const auto config = kGrids[1].config<2>(CellKind::kSegmented, make_executor(8));
   const Record once = run(steps_, config);
   const Record again = run(steps_, config);
   EXPECT_EQ(first_difference(once.counters, again.counters), -1);
@@ -154,7 +154,7 @@ TEST_P(EngineDeterminismLarge, EventsAndCountersAreTheSameForAllThreads) {
                            .rebirth_percent = 2,
                            .steps = 4};
   const std::vector<Ops> steps = script_of(regime, 1);
-  const auto config = [](int threads) { return kGrids[0].config<float, 2>(GetParam(), make_executor(threads)); };
+  const auto config = [](int threads) { return kGrids[0].config<2>(GetParam(), make_executor(threads)); };
   const Record expected = run(steps, config(1));
   ASSERT_GT(expected.events[1].begins.size(), 1500u) << "too few to be merged in several ranges";
   for (const int threads : {2, 3, 8}) {
@@ -177,7 +177,7 @@ TEST(EngineCounters, AreTheSameForEveryOrderOfUpdatesAndErases) {
     for (const CellKind kind : kKinds) {
       std::vector<StepCounters> expected;
       for (std::uint64_t seed = 0; seed < 5; ++seed) {
-        Engine<float, 2> engine(kGrids[1].config<float, 2>(kind, make_executor(seed == 0 ? 1 : 3)));
+        Engine<float, 2> engine(kGrids[1].config<2>(kind, make_executor(seed == 0 ? 1 : 3)));
         std::vector<StepCounters> counters;
         for (const Ops& ops : steps) {
           queue_inserts_first(engine, ops, seed);

@@ -111,7 +111,7 @@ struct Journey {
   std::size_t last_grids = 0;
 };
 
-Journey travel(const FollowCase& scene, const Config<float, 2>& config, Calls calls) {
+Journey travel(const FollowCase& scene, const Config& config, Calls calls) {
   Engine2 engine(config);
   EngineModel<float, 2> model;
   FollowScript script(scene, 3);
@@ -138,8 +138,8 @@ Journey travel(const FollowCase& scene, const Config<float, 2>& config, Calls ca
 
 class EngineFollows : public ::testing::TestWithParam<FollowCase> {
  protected:
-  static Config<float, 2> config(CellKind kind, Reduction reduction, int threads) {
-    Config<float, 2> config;
+  static Config config(CellKind kind, Reduction reduction, int threads) {
+    Config config;
     config.cell.kind = kind;
     config.cell.segment_capacity = 8;
     config.cell_population = 10;
@@ -183,7 +183,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, EngineFollows,
 // A home whose objects have not come yet is empty, but not to be given up.
 TEST(EngineFollowsTheFew, TheWidestMayBeTheLastToMove) {
   for (const CellKind kind : {CellKind::kRows, CellKind::kBatch}) {
-    Config<float, 2> config;
+    Config config;
     config.cell.kind = kind;
     config.threads = 1;
     Engine2 engine(config);
@@ -223,7 +223,7 @@ TEST(EngineFollowsTheFew, TheWidestMayBeTheLastToMove) {
 
 // Cells change their kind while they are used, and pairs are the same.
 TEST(EngineFollowsTheFew, ACrowdedCellChangesItsKindAndBack) {
-  Config<float, 2> config;
+  Config config;
   config.cell.kind = CellKind::kAuto;
   config.cell_size = 1000;
   config.threads = 1;

@@ -50,7 +50,7 @@ Box<Scalar, Dim> read_box(std::istringstream& words) {
 
 /// The file's text with the events that an engine of these settings says.
 template <class Scalar, int Dim>
-std::string replayed(const std::string& text, const Config<Scalar, Dim>& config) {
+std::string replayed(const std::string& text, const Config& config) {
   Engine<Scalar, Dim> engine(config);
   std::istringstream lines(text);
   std::ostringstream out;
@@ -80,10 +80,10 @@ std::string replayed(const std::string& text, const Config<Scalar, Dim>& config)
 
 template <class Scalar, int Dim>
 void check(const std::string& name, const std::string& text) {
-  Config<Scalar, Dim> config;
+  Config config;
   config.threads = 1;
   if (std::getenv("SWEEPGRID_UPDATE_GOLDEN") != nullptr) {
-    std::ofstream(path_of(name)) << replayed(text, config);
+    std::ofstream(path_of(name)) << replayed<Scalar, Dim>(text, config);
     GTEST_SKIP() << "wrote " << path_of(name);
   }
   for (const CellKind kind :
@@ -93,8 +93,9 @@ void check(const std::string& name, const std::string& text) {
         config.cell.kind = kind;
         config.reduction = reduction;
         config.cell_population = population;
-        EXPECT_EQ(replayed(text, config), text) << "kind " << static_cast<int>(kind) << ", population " << population
-                                                << ", reduction " << static_cast<int>(reduction);
+        EXPECT_EQ((replayed<Scalar, Dim>(text, config)), text)
+            << "kind " << static_cast<int>(kind) << ", population " << population << ", reduction "
+            << static_cast<int>(reduction);
       }
     }
   }

@@ -19,7 +19,7 @@ namespace {
 
 template <class Key, class EngineType, class Model>
 void expect_sorted_events_of(const std::vector<Key>& keys) {
-  Config2 config;
+  Config config;
   config.threads = 2;
   EngineType engine(config);
   Model model;

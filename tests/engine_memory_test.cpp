@@ -66,8 +66,7 @@ struct Failed {
 
 /// Lets each step of a script fail at many of its allocations before it is done; says what was wrong and when.
 template <class Scalar, int Dim>
-std::string play_failing(const Config<Scalar, Dim>& config, SceneScript<Scalar, Dim> script, int steps,
-                         Failed& failed) {
+std::string play_failing(const Config& config, SceneScript<Scalar, Dim> script, int steps, Failed& failed) {
   Engine<Scalar, Dim> engine(config);
   Engine<Scalar, Dim> other(config);
   std::vector<Pair<std::uint64_t>> pairs;
@@ -122,7 +121,7 @@ TEST(WithoutMemory, AStepIsDoneWhollyOrNotAtAll) {
         for (const Reduction reduction : kReductions) {
           ++turn;
           if (kSanitized && turn % 7 != 0) continue;
-          auto config = kGrids[2].config<float, 3>(kind, make_executor(1), reduction);
+          auto config = kGrids[2].config<3>(kind, make_executor(1), reduction);
           if (reduction == Reduction::kSingleReporter) config.cell_population.reset();
           config.envelope = envelope;
           const SceneScript<float, 3> script(regime, turn);

@@ -102,10 +102,10 @@ struct GridChoice {
   int population = 0;    ///< 0: the engine's choice
   double cell_size = 0;  ///< 0: derived
 
-  template <class Scalar, int Dim>
-  [[nodiscard]] Config<Scalar, Dim> config(CellKind kind, std::shared_ptr<Executor> executor,
-                                           Reduction reduction = Reduction::kSingleReporter) const {
-    Config<Scalar, Dim> config;
+  template <int Dim>
+  [[nodiscard]] Config config(CellKind kind, std::shared_ptr<Executor> executor,
+                              Reduction reduction = Reduction::kSingleReporter) const {
+    Config config;
     config.cell.kind = kind;
     config.cell.segment_capacity = 4 + static_cast<int>(cell_size) % 5;  // small: cells hold few objects here
     if (population > 0) config.cell_population = population;
@@ -145,7 +145,7 @@ inline constexpr std::array kThreadCounts{1, 2, 3, 8};
 
 /// Plays a script to an engine and the model; says what differed and when, nothing when all was well.
 template <class Scalar, int Dim, class Script>
-std::string play(const Config<Scalar, Dim>& config, Script script, int steps, Calls calls) {
+std::string play(const Config& config, Script script, int steps, Calls calls) {
   Engine<Scalar, Dim> engine(config);
   EngineModel<Scalar, Dim> model;
   for (int step = 0; step < steps; ++step) {

@@ -13,7 +13,7 @@ std::string play_kinds(const SceneRegime& regime) {
     // Only derived sizes: four dimensions have room for many cells.
     const GridChoice& grid = kGrids[turn % 3];
     const Reduction reduction = kReductions[(turn + Dim) / 2 % 2];
-    const auto config = grid.config<std::int32_t, Dim>(kind, make_executor(turn % 2 == 0 ? 1 : 3), reduction);
+    const auto config = grid.config<Dim>(kind, make_executor(turn % 2 == 0 ? 1 : 3), reduction);
     const std::string wrong = play<std::int32_t, Dim>(config, SceneScript<std::int32_t, Dim>(regime, turn),
                                                       regime.steps, kCalls[turn % kCalls.size()]);
     if (!wrong.empty()) {

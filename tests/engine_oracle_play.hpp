@@ -34,7 +34,7 @@ std::string play_matrix(const SceneRegime& regime, std::size_t turn) {
         while (!kGrids[g].suits(regime.place, kReductions[r])) g = (g + 1) % kGrids.size();
         const GridChoice& grid = kGrids[g];
         const Calls calls = kCalls[(turn + k) % kCalls.size()];
-        const std::string wrong = play<Scalar, Dim>(grid.config<Scalar, Dim>(kKinds[k], executor, kReductions[r]),
+        const std::string wrong = play<Scalar, Dim>(grid.config<Dim>(kKinds[k], executor, kReductions[r]),
                                                     SceneScript<Scalar, Dim>(regime, turn), regime.steps, calls);
         if (!wrong.empty()) {
           return std::string(regime.name) + ", " + kKindNames[k] + " cells, " + kReductionNames[r] + ", " + grid.name +

@@ -7,7 +7,7 @@ template <class Scalar, int Dim>
 std::string play_script(const Regime& regime, std::size_t turn) {
   for (const CellKind kind : kKinds) {
     ++turn;
-    Config<Scalar, Dim> config;
+    Config config;
     config.cell.kind = kind;
     config.cell_population = turn % 2 == 0 ? 2 : 20;
     config.threads = turn % 3 == 0 ? 3 : 1;
@@ -46,7 +46,7 @@ std::string play_large(int threads) {
     for (const CellKind kind : {CellKind::kRows, CellKind::kSegmented}) {
       for (const std::size_t g : {std::size_t{0}, std::size_t{3}}) {
         const Reduction reduction = kReductions[(g + (kind == CellKind::kRows ? 0 : 1)) % 2];
-        const std::string wrong = play<float, 3>(kGrids[g].config<float, 3>(kind, executor, reduction),
+        const std::string wrong = play<float, 3>(kGrids[g].config<3>(kind, executor, reduction),
                                                  SceneScript<float, 3>(regime, g), regime.steps, kCalls[2 + g / 3]);
         if (!wrong.empty()) return std::string(regime.name) + ", " + kGrids[g].name + ": " + wrong;
       }

@@ -10,7 +10,7 @@ namespace sweepgrid {
 namespace {
 
 TEST(EngineStats, CountWhatHappened) {
-  Config2 config = serial();
+  Config config = serial();
   config.cell.kind = CellKind::kBatch;
   config.cell_size = 10;
   Engine2 engine(config);
@@ -58,7 +58,7 @@ TEST(EngineStats, CountWhatHappened) {
 }
 
 TEST(EngineStats, GridsAreMadeForSizesThatExistAndGoWithThem) {
-  Config2 config = serial();
+  Config config = serial();
   config.cell_size = 1;
   Engine2 engine(config);
   for (std::uint64_t key = 0; key < 10; ++key) engine.insert(key, square(static_cast<float>(3 * key), 0));
@@ -91,7 +91,7 @@ TEST(EngineStats, ACrowdAtOnePointKeepsItsCells) {
 }
 
 TEST(EngineStats, ABoxOverEverythingIsInFewCellsOfABoundedGrid) {
-  Config2 config = serial();
+  Config config = serial();
   config.reduction = Reduction::kWitnessCounts;
   config.cell_population = 2;
   Engine2 engine(config);
@@ -113,7 +113,7 @@ TEST(EngineStats, ABoxOverEverythingIsInFewCellsOfABoundedGrid) {
 
 TEST(EngineStats, OnlyWitnessCountsKeepATableOfPairs) {
   for (const Reduction reduction : {Reduction::kSingleReporter, Reduction::kWitnessCounts}) {
-    Config2 config = serial();
+    Config config = serial();
     config.reduction = reduction;
     Engine2 engine(config);
     for (std::uint64_t key = 0; key < 50; ++key) engine.insert(key, square(0, 0));
@@ -126,7 +126,7 @@ TEST(EngineStats, OnlyWitnessCountsKeepATableOfPairs) {
 
 TEST(EngineStats, AGrowingSceneMakesTheGridAnewOnce) {
   for (const Reduction reduction : {Reduction::kSingleReporter, Reduction::kWitnessCounts}) {
-    Config2 config = serial();
+    Config config = serial();
     config.reduction = reduction;
     Engine2 engine(config);
     for (std::uint64_t key = 0; key < 10; ++key) engine.insert(key, square(static_cast<float>(20 * key), 0));
@@ -161,7 +161,7 @@ void queue_square(Engine2& engine, float centre, float edge) {
 
 TEST(EngineStats, ASceneThatCollapsesGetsSmallerCells) {
   for (const Reduction reduction : {Reduction::kSingleReporter, Reduction::kWitnessCounts}) {
-    Config2 config = serial();
+    Config config = serial();
     config.reduction = reduction;
     Engine2 engine(config);
     float edge = 1024;
@@ -183,7 +183,7 @@ TEST(EngineStats, ASceneThatCollapsesGetsSmallerCells) {
 }
 
 TEST(EngineStats, ASceneThatLeavesItsPlaceKeepsItsCells) {
-  Config2 config = serial();
+  Config config = serial();
   for (const Reduction reduction : {Reduction::kSingleReporter, Reduction::kWitnessCounts}) {
     config.reduction = reduction;
     Engine2 engine(config);

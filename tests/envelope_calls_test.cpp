@@ -24,7 +24,7 @@ using Box2 = Box<double, 2>;
 using Engine2 = Engine<double, 2>;
 
 Engine2 engine_with(const EnvelopeOptions& options, int threads = 1) {
-  Config<double, 2> config;
+  Config config;
   config.threads = threads;
   config.envelope = options;
   return Engine2(config);
@@ -278,7 +278,7 @@ TEST(Envelope, CostsNothingWhenOff) {
   EXPECT_EQ((sizeof(ObjectTable<float, 2>::Record)), 64U);
   // The same counters as with envelopes that are the boxes.
   const SceneRegime regime{.name = "Uniform", .churn_percent = 5};
-  Config<double, 2> config;
+  Config config;
   config.threads = 1;
   Engine2 off(config);
   Engine2 on = engine_with({});

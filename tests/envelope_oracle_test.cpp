@@ -53,7 +53,7 @@ std::string play_settings(const SceneRegime& regime, std::size_t turn) {
     // Without levels, wide envelopes are in too many cells of a fine grid.
     const bool wide = setting.options.margin > 5 || setting.options.margin_steps > 0 || setting.options.swept;
     if (wide && kReductions[r] == Reduction::kWitnessCounts) g = 2;  // the one with many objects per cell
-    auto config = kGrids[g].template config<Scalar, Dim>(kKinds[k], make_executor(threads), kReductions[r]);
+    auto config = kGrids[g].template config<Dim>(kKinds[k], make_executor(threads), kReductions[r]);
     config.envelope = setting.options;
     const Calls calls = kCalls[(turn + k) % kCalls.size()];
     const std::string wrong =
@@ -87,7 +87,7 @@ std::string play_script(const Regime& regime, std::size_t turn) {
   for (const Setting& setting : settings()) {
     ++turn;
     if (turn % kStride != 0) continue;
-    Config<Scalar, Dim> config;
+    Config config;
     config.cell.kind = kKinds[turn % kKinds.size()];
     config.cell_population = turn % 2 == 0 ? 2 : 20;
     config.threads = turn % 3 == 0 ? 3 : 1;
@@ -124,7 +124,7 @@ TEST(EnvelopeThreads, LeaveNoTrace) {
     for (const int threads : {1, 2, 8}) {
       for (const CellKind kind : {CellKind::kAuto, CellKind::kSegmented}) {
         if (kind == CellKind::kSegmented && threads != 2) continue;
-        Config<float, 2> config;
+        Config config;
         config.threads = threads;
         config.cell.kind = kind;
         config.envelope = setting.options;

@@ -114,7 +114,7 @@ std::string compare_envelopes(const EnvelopeOptions& options, const Engine<Scala
 
 /// Plays a script with envelopes; says what was wrong and when, nothing when all was well. `stream`: all events.
 template <class Scalar, int Dim, class Script>
-std::string play_envelopes(const Config<Scalar, Dim>& config, Script script, int steps, Calls calls,
+std::string play_envelopes(const Config& config, Script script, int steps, Calls calls,
                            std::vector<Events<std::uint64_t>>* stream = nullptr) {
   Engine<Scalar, Dim> engine(config);
   EngineModel<Scalar, Dim> model;

@@ -141,9 +141,8 @@ Box<Scalar, Dim> as(const Whole<Dim>& box) {
   return result;
 }
 
-template <class Scalar, int Dim>
-Config<Scalar, Dim> config_of(std::size_t turn, const EnvelopeOptions& options) {
-  Config<Scalar, Dim> config;
+Config config_of(std::size_t turn, const EnvelopeOptions& options) {
+  Config config;
   config.cell.kind = kKinds[turn % kKinds.size()];
   config.reduction = turn % 3 == 0 ? Reduction::kWitnessCounts : Reduction::kSingleReporter;
   config.threads = turn % 2 == 0 ? 1 : 2;
@@ -153,7 +152,7 @@ Config<Scalar, Dim> config_of(std::size_t turn, const EnvelopeOptions& options) 
 
 /// Says how many pairs were missed in which step; nothing when none. `met`: counts pairs that no step saw.
 template <class Scalar, int Dim>
-std::string fly(const Config<Scalar, Dim>& config, int widths_per_step, std::size_t& met_between) {
+std::string fly(const Config& config, int widths_per_step, std::size_t& met_between) {
   Engine<Scalar, Dim> engine(config);
   Flight<Dim> flight(150, widths_per_step, static_cast<std::uint64_t>(widths_per_step) + Dim);
   for (const auto& body : flight.bodies()) engine.insert(body.key, as<Scalar>(body.now));
@@ -194,9 +193,9 @@ TEST(Swept, MissesNothingBetweenStepsAtAnySpeed) {
     for (const double margin : {0.0, 3.0}) {
       std::size_t between = 0;
       const EnvelopeOptions options{.margin = margin, .swept = true};
-      EXPECT_EQ(fly(config_of<float, 3>(++turn, options), speed, between), "") << speed;
-      EXPECT_EQ(fly(config_of<double, 2>(++turn, options), speed, between), "") << speed;
-      EXPECT_EQ(fly(config_of<std::int32_t, 2>(++turn, options), speed, between), "") << speed;
+      EXPECT_EQ((fly<float, 3>(config_of(++turn, options), speed, between)), "") << speed;
+      EXPECT_EQ((fly<double, 2>(config_of(++turn, options), speed, between)), "") << speed;
+      EXPECT_EQ((fly<std::int32_t, 2>(config_of(++turn, options), speed, between)), "") << speed;
       if (speed >= 10) {
         EXPECT_GT(between, 30U);  // or the test would prove nothing
       }
@@ -206,7 +205,7 @@ TEST(Swept, MissesNothingBetweenStepsAtAnySpeed) {
 
 TEST(Swept, AnObjectThatStopsShrinksByItself) {
   for (const int threads : {1, 2}) {
-    Config<float, 2> config;
+    Config config;
     config.threads = threads;
     config.envelope = EnvelopeOptions{.swept = true};
     Engine<float, 2> engine(config);
@@ -228,7 +227,7 @@ TEST(Swept, AnObjectThatStopsShrinksByItself) {
 
 // With displacements, the step covers the way that lies ahead.
 template <class Scalar, int Dim>
-std::string fly_ahead(const Config<Scalar, Dim>& config, int widths_per_step) {
+std::string fly_ahead(const Config& config, int widths_per_step) {
   Engine<Scalar, Dim> engine(config);
   Flight<Dim> flight(150, widths_per_step, 77);
   const auto tell = [&](auto& body) {
@@ -258,14 +257,14 @@ TEST(Swept, MissesNothingOnTheWayAhead) {
   std::size_t turn = 0;
   for (const int speed : {1, 10, 100}) {
     const EnvelopeOptions options{.swept = true};
-    EXPECT_EQ(fly_ahead(config_of<float, 2>(++turn, options), speed), "") << speed;
-    EXPECT_EQ(fly_ahead(config_of<double, 3>(++turn, options), speed), "") << speed;
-    EXPECT_EQ(fly_ahead(config_of<std::int32_t, 3>(++turn, options), speed), "") << speed;
+    EXPECT_EQ((fly_ahead<float, 2>(config_of(++turn, options), speed)), "") << speed;
+    EXPECT_EQ((fly_ahead<double, 3>(config_of(++turn, options), speed)), "") << speed;
+    EXPECT_EQ((fly_ahead<std::int32_t, 3>(config_of(++turn, options), speed)), "") << speed;
   }
 }
 
 TEST(Swept, WhoGoesElsewhereThanWasSaidIsNamed) {
-  Config<double, 2> config;
+  Config config;
   config.envelope = EnvelopeOptions{.swept = true};
   Engine<double, 2> engine(config);
   const Handle honest = engine.insert(1, {{0, 0}, {1, 1}});
@@ -290,7 +289,7 @@ TEST(Swept, WhoGoesElsewhereThanWasSaidIsNamed) {
 }
 
 TEST(Swept, AStrideCoversTheWaySinceTheLatestQuery) {
-  Config<float, 2> config;
+  Config config;
   config.envelope = EnvelopeOptions{.swept = true, .stride = 3};
   Engine<float, 2> engine(config);
   const Handle flies = engine.insert(1, {{0, 0}, {1, 1}});

@@ -431,7 +431,7 @@ TEST(TuneJson, IsASetupWithTheReasons) {
   EXPECT_EQ(json.at("scalar"), "int16");
   EXPECT_EQ(json.at("axes"), nlohmann::json({0, 1, 2}));
   EXPECT_GT(json.at("quantizer").at("resolution"), 0);
-  const Config<std::int16_t, 3> config = json.at("config");
+  const Config config = json.at("config");
   EXPECT_EQ(config.threads, 1);
   EXPECT_EQ(json.at("tune").at("reasons").size(), 6U);
   EXPECT_EQ(json.at("tune").at("rejected").size(), tuning.result.rejected.size());

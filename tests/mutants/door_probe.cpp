@@ -157,8 +157,8 @@ class Twins {
     Box2 box;
   };
 
-  static Config<float, 2> config(std::shared_ptr<Executor> executor) {
-    Config<float, 2> config;
+  static Config config(std::shared_ptr<Executor> executor) {
+    Config config;
     config.executor = std::move(executor);
     config.cell_size = 4;
     return config;

@@ -18,7 +18,6 @@ namespace sweepgrid {
 namespace {
 
 using TestEngine = Engine<float, 2>;
-using TestConfig = Config<float, 2>;
 using Ops = oracle::EngineOps<float, 2>;
 
 void queue(TestEngine& engine, Client& client, const Ops& ops) {
@@ -63,7 +62,7 @@ int report(const char* scene, int step, const std::vector<std::string>& findings
 }
 
 template <class Script>
-int probe(const TestConfig& config, const char* scene, Script script, int steps) {
+int probe(const Config& config, const char* scene, Script script, int steps) {
   TestEngine engine(config);
   Client client;
   for (int number = 0; number < steps; ++number) {
@@ -73,7 +72,7 @@ int probe(const TestConfig& config, const char* scene, Script script, int steps)
   return 0;
 }
 
-int probe_cells(const TestConfig& config, const oracle::Regime& regime) {
+int probe_cells(const Config& config, const oracle::Regime& regime) {
   oracle::OpScript<float, 2> script(regime, 1);
   const auto next = [&] {
     Ops ops;
@@ -83,14 +82,14 @@ int probe_cells(const TestConfig& config, const oracle::Regime& regime) {
   return probe(config, regime.name, next, regime.drains);
 }
 
-int probe_scene(const TestConfig& config, const oracle::SceneRegime& regime) {
+int probe_scene(const Config& config, const oracle::SceneRegime& regime) {
   oracle::SceneScript<float, 2> script(regime, 1);
   return probe(
       config, regime.name, [&] { return script.next(); }, regime.steps);
 }
 
-TestConfig config_of(CellKind kind, Reduction reduction, double cell_size) {
-  TestConfig config;
+Config config_of(CellKind kind, Reduction reduction, double cell_size) {
+  Config config;
   if (kind == CellKind::kBatch) {
     config.executor = std::make_shared<Backwards>();
   } else {
@@ -121,7 +120,7 @@ constexpr oracle::SceneRegime kFleeting{
     .name = "Fleeting", .population = 200, .moving_percent = 20, .churn_percent = 40};
 
 /// Many come at once, and few move: everybody else is carried to the new cells, a slice in each step.
-int probe_following(TestConfig config) {
+int probe_following(Config config) {
   config.executor = std::make_shared<Backwards>();
   TestEngine engine(config);
   Client client;
@@ -169,7 +168,7 @@ int probe_following(TestConfig config) {
 }
 
 /// Steps are refused now and then, some of them several times.
-int probe_refusals(const TestConfig& config, const oracle::SceneRegime& regime) {
+int probe_refusals(const Config& config, const oracle::SceneRegime& regime) {
   TestEngine engine(config);
   Client client;
   oracle::SceneScript<float, 2> script(regime, 1);
@@ -204,10 +203,10 @@ int probe_refusals(const TestConfig& config, const oracle::SceneRegime& regime) 
 }
 
 int probe_scenes() {
-  const TestConfig rows = config_of(CellKind::kRows, Reduction::kSingleReporter, 0);
-  const TestConfig batch = config_of(CellKind::kBatch, Reduction::kSingleReporter, 0);
-  const TestConfig fine = config_of(CellKind::kRows, Reduction::kSingleReporter, 1);
-  const TestConfig counts = config_of(CellKind::kRows, Reduction::kWitnessCounts, 0);
+  const Config rows = config_of(CellKind::kRows, Reduction::kSingleReporter, 0);
+  const Config batch = config_of(CellKind::kBatch, Reduction::kSingleReporter, 0);
+  const Config fine = config_of(CellKind::kRows, Reduction::kSingleReporter, 1);
+  const Config counts = config_of(CellKind::kRows, Reduction::kWitnessCounts, 0);
   if (probe_refusals(rows, kFleeting) != 0 || probe_refusals(batch, kSizes) != 0) return 1;
   if (probe_refusals(counts, kFleeting) != 0) return 1;
   if (probe_following(config_of(CellKind::kRows, Reduction::kSingleReporter, 0)) != 0) return 1;
@@ -218,13 +217,13 @@ int probe_scenes() {
 }
 
 int probe_all_cells() {
-  const TestConfig rows = config_of(CellKind::kRows, Reduction::kSingleReporter, 0);
-  const TestConfig batch = config_of(CellKind::kBatch, Reduction::kSingleReporter, 0);
-  const TestConfig counts = config_of(CellKind::kBatch, Reduction::kWitnessCounts, 0);
-  const TestConfig wide = config_of(CellKind::kSegmented, Reduction::kWitnessCounts, 500);
-  const TestConfig crowded = config_of(CellKind::kRows, Reduction::kWitnessCounts, 2);
+  const Config rows = config_of(CellKind::kRows, Reduction::kSingleReporter, 0);
+  const Config batch = config_of(CellKind::kBatch, Reduction::kSingleReporter, 0);
+  const Config counts = config_of(CellKind::kBatch, Reduction::kWitnessCounts, 0);
+  const Config wide = config_of(CellKind::kSegmented, Reduction::kWitnessCounts, 500);
+  const Config crowded = config_of(CellKind::kRows, Reduction::kWitnessCounts, 2);
   for (const oracle::Regime& regime : oracle::kRegimes) {
-    for (const TestConfig* config : {&rows, &batch, &counts, &wide, &crowded}) {
+    for (const Config* config : {&rows, &batch, &counts, &wide, &crowded}) {
       if (config == &wide && regime.palette != oracle::Palette::kFine) continue;
       if (config == &crowded && regime.palette != oracle::Palette::kLattice) continue;
       if (probe_cells(*config, regime) != 0) return 1;

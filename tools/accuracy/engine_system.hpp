@@ -18,7 +18,7 @@ using baselines::ObjectPair;
 class EngineSystem final : public baselines::System {
  public:
   /// `single_calls`: one call for every object rather than one for all.
-  EngineSystem(const Config<float, 3>& config, bool single_calls, std::uint32_t objects)
+  EngineSystem(const Config& config, bool single_calls, std::uint32_t objects)
       : single_calls_(single_calls), engine_(config), handles_(objects) {}
 
   void queue(const ScriptStep& step) override;

@@ -26,8 +26,8 @@ constexpr NamedKind kKinds[] = {{"classic", CellKind::kClassic},
                                 {"rows", CellKind::kRows},
                                 {"plane", CellKind::kPlane}};
 
-Config<float, 3> on_one_thread(CellKind kind) {
-  Config<float, 3> config;
+Config on_one_thread(CellKind kind) {
+  Config config;
   config.cell.kind = kind;
   config.threads = 1;
   return config;

@@ -22,7 +22,7 @@ Json optional_json(const std::optional<T>& value) {
 
 Json settings_json(const RunOptions& options, int workers) {
   const EngineSetup setup = setup_of(options);
-  const Config<double, 3>& config = setup.config;
+  const Config& config = setup.config;
   return {{"threads", options.thread_count()},
           {"workers", workers},
           {"cell", cell_name(config.cell.kind)},

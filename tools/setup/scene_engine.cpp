@@ -17,7 +17,7 @@ class TypedSceneEngine final : public SceneEngine {
   using BoxType = Box<Scalar, Dim>;
 
   TypedSceneEngine(const EngineSetup& setup, const std::vector<std::size_t>& axes)
-      : convert_(setup.treatment, axes), engine_(config_as<Scalar, Dim>(setup.config)) {}
+      : convert_(setup.treatment, axes), engine_(setup.config) {}
 
   void convert(std::span<const SceneBox> inserted, std::span<const SceneBox> updated) override {
     convert_all(inserted, inserted_);

@@ -12,7 +12,7 @@ using Engine = sweepgrid::Engine<double, 3, std::string>;
 Engine::BoxType cube(double corner) { return {{corner, corner, corner}, {corner + 1, corner + 1, corner + 1}}; }
 
 bool events_are_right(int threads) {
-  Engine::ConfigType config;
+  sweepgrid::Config config;
   config.threads = threads;
   Engine engine(config);
   const auto rock = engine.insert("rock", cube(0));

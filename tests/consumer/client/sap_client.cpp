@@ -6,7 +6,7 @@
 int main() {
   using Cell = sweepgrid::SweepAndPrune<float, 2>;
   const auto cell = sweepgrid::make_cell<float, 2>({});
-  std::vector<sweepgrid::OverlapDelta> deltas;
+  sweepgrid::DeltaList deltas;
   sweepgrid::SapCounters counters;
   cell->drain(std::vector<Cell::Op>{}, deltas, counters);
   return deltas.empty() && cell->size() == 0 ? 0 : 1;

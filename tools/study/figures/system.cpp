@@ -75,7 +75,7 @@ class CellSystem final : public System {
 /// The engine, as a client uses it: by handle and in bulk.
 class EngineSystem final : public System {
  public:
-  EngineSystem(const Config<float, 3>& config, std::uint32_t numbers) : engine_(config), handles_(numbers) {}
+  EngineSystem(const Config& config, std::uint32_t numbers) : engine_(config), handles_(numbers) {}
 
   void step(const ScriptStep& changes) override {
     engine_.erase(handles_of(changes.erased));
@@ -141,8 +141,8 @@ class OctreeSystem final : public System {
   Work work_;
 };
 
-Config<float, 3> grid_config(const SystemSpec& spec, const Script& script) {
-  Config<float, 3> config;
+Config grid_config(const SystemSpec& spec, const Script& script) {
+  Config config;
   config.cell = spec.cell;
   config.reduction = Reduction::kWitnessCounts;
   config.cell_size = grid_cell_size(spec.population, script);
@@ -161,7 +161,7 @@ double grid_cell_size(double population, const Script& script) {
 }
 
 std::unique_ptr<System> make_system(const SystemSpec& spec, const Script& script) {
-  Config<float, 3> engine_defaults;
+  Config engine_defaults;
   engine_defaults.threads = 1;
   switch (spec.layout) {
     case Layout::kOneCell:

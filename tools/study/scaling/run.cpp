@@ -144,8 +144,8 @@ class EngineRun {
   }
 
  private:
-  static Config<float, Dim> config(const ScalingSettings& settings, const std::shared_ptr<Executor>& executor) {
-    Config<float, Dim> config;
+  static Config config(const ScalingSettings& settings, const std::shared_ptr<Executor>& executor) {
+    Config config;
     config.cell_population = settings.cell_population;
     config.executor = executor;
     return config;

@@ -21,7 +21,6 @@ enum class Reduction {
 
 /// Settings of an engine. Events do not depend on any of them but `envelope`; time and memory do. The defaults suit
 /// most scenes.
-template <class Scalar, int Dim>
 struct Config {
   /// Kind of the cells and its parameters.
   CellOptions cell;

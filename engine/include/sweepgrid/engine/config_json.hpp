@@ -10,7 +10,7 @@
 #include <sweepgrid/engine/json_members.hpp>
 #include <sweepgrid/sap/cell_kind.hpp>
 
-// Settings to and from JSON, by nlohmann-json: `Config<float, 3> config = json;`, `nlohmann::json json = config;`. For
+// Settings to and from JSON, by nlohmann-json: `Config config = json;`, `nlohmann::json json = config;`. For
 // those who include this: nothing else of the library knows JSON.
 //
 // Members have the names that they have in the structs. What is absent has its default, and so have members of type
@@ -88,8 +88,8 @@ void from_json(const BasicJson& json, EnvelopeOptions& options) {
   }
 }
 
-template <class BasicJson, class Scalar, int Dim>
-void to_json(BasicJson& json, const Config<Scalar, Dim>& config) {
+template <class BasicJson>
+void to_json(BasicJson& json, const Config& config) {
   json = {{"cell", config.cell},
           {"cell_size", json_members::optional_json<BasicJson>(config.cell_size)},
           {"cell_population", json_members::optional_json<BasicJson>(config.cell_population)},
@@ -99,9 +99,9 @@ void to_json(BasicJson& json, const Config<Scalar, Dim>& config) {
           {"threads", config.threads}};
 }
 
-template <class BasicJson, class Scalar, int Dim>
-void from_json(const BasicJson& json, Config<Scalar, Dim>& config) {
-  Config<Scalar, Dim> read;
+template <class BasicJson>
+void from_json(const BasicJson& json, Config& config) {
+  Config read;
   read.executor = config.executor;
   JsonMembers<BasicJson> members(json, "Config");
   members.read("cell", read.cell);

@@ -49,11 +49,10 @@ template <class Scalar, int Dim, class Key = std::uint64_t, class Hash = std::ha
 class Engine {
  public:
   using BoxType = Box<Scalar, Dim>;
-  using ConfigType = Config<Scalar, Dim>;
   using Displacement = std::array<double, static_cast<std::size_t>(Dim)>;
 
   /// Throws std::invalid_argument that names the setting when one is out of its range.
-  explicit Engine(ConfigType config = {});
+  explicit Engine(Config config = {});
 
   /// Queues a new object; it takes part from the next step() on. The handle is good at once.
   /// Errors: `key` names a live object; `box` has a NaN or min > max. O(1).

@@ -14,7 +14,7 @@ namespace sweepgrid {
 #define SWEEPGRID_ENGINE Engine<Scalar, Dim, Key, Hash, Order>
 
 SWEEPGRID_ENGINE_TEMPLATE
-SWEEPGRID_ENGINE::Engine(ConfigType config) : core_(config, sizeof(PairKey) + 2 * sizeof(Pair<Key>)) {
+SWEEPGRID_ENGINE::Engine(Config config) : core_(config, sizeof(PairKey) + 2 * sizeof(Pair<Key>)) {
   make_envelopes(config.envelope);
   add_order_stages();
 }

@@ -27,11 +27,10 @@ template <class Scalar, int Dim>
 class EngineCore {
  public:
   using BoxType = Box<Scalar, Dim>;
-  using ConfigType = Config<Scalar, Dim>;
   using Objects = ObjectTable<Scalar, Dim>;
 
   /// Throws std::invalid_argument that names the setting. `event_bytes`: what the lists of an event take in all.
-  explicit EngineCore(ConfigType config, std::size_t event_bytes = 3 * sizeof(PairKey));
+  explicit EngineCore(Config config, std::size_t event_bytes = 3 * sizeof(PairKey));
   ~EngineCore();
 
   [[nodiscard]] Objects& objects() { return objects_; }
@@ -162,7 +161,7 @@ class EngineCore {
   [[nodiscard]] const BoxType& stepped_box(ObjectId object) const;
   [[nodiscard]] bool meet_in(PairKey pair, GridIndex grid, std::uint64_t cell) const;
 
-  ConfigType config_;
+  Config config_;
   std::shared_ptr<Executor> executor_;
   Objects objects_;
   LevelsType levels_;

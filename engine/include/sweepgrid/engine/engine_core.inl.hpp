@@ -34,7 +34,7 @@ inline constexpr std::uint64_t kSmallestTask = 8192;
 inline constexpr double kDenseShare = 0.4;
 
 template <class Scalar, int Dim>
-void require_valid(const Config<Scalar, Dim>& config) {
+void require_valid(const Config& config) {
   const auto refuse = [](const std::string& what) { throw std::invalid_argument("sweepgrid: Config::" + what); };
   if (config.cell_population && *config.cell_population < 1) {
     refuse("cell_population is " + std::to_string(*config.cell_population) + ", but must be at least 1");
@@ -49,9 +49,9 @@ void require_valid(const Config<Scalar, Dim>& config) {
 }  // namespace engine_core
 
 template <class Scalar, int Dim>
-EngineCore<Scalar, Dim>::EngineCore(ConfigType config, std::size_t event_bytes)
+EngineCore<Scalar, Dim>::EngineCore(Config config, std::size_t event_bytes)
     : config_(std::move(config)), event_bytes_(event_bytes) {
-  engine_core::require_valid(config_);
+  engine_core::require_valid<Scalar, Dim>(config_);
   executor_ = config_.executor ? config_.executor : make_executor(config_.threads);
   const auto workers = static_cast<std::size_t>(executor_->concurrency());
   if (counting()) {
