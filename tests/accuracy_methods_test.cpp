@@ -140,7 +140,7 @@ class WrongSystem final : public baselines::System {
 
 Trial try_fault(WrongSystem::Fault fault, const KnownScript& known, const RunBudget& budget) {
   Method method;
-  method.make = [fault](const SceneScript&) { return std::make_unique<WrongSystem>(fault); };
+  method.make = [fault](const SceneScript&, std::uint64_t) { return std::make_unique<WrongSystem>(fault); };
   return try_method(method, known, budget);
 }
 
@@ -155,6 +155,18 @@ TEST(MethodTrial, NamesWhatIsWrong) {
   EXPECT_EQ(verdict_name(verdict(WrongSystem::Fault::kThrows).verdict), "error");
   EXPECT_EQ(verdict(WrongSystem::Fault::kThrows).error, "out of ideas");
   EXPECT_EQ(verdict_name(verdict(WrongSystem::Fault::kHogs).verdict), "memory");
+}
+
+TEST(MethodTrial, TellsWhoRefusesAStepForWantOfMemory) {
+  if (!guarded_runs_work()) GTEST_SKIP();
+  const std::string scene = scene_at(memory_regime(), "", 300, 3);
+  const KnownScript known = know_script(scene, 3);
+  const auto verdict = [&](const char* method, std::uint64_t mb) {
+    return verdict_name(try_method(*find_method(method), known, {mb << 20, 60}).verdict);
+  };
+  EXPECT_EQ(verdict("engine", 256), "exact");
+  EXPECT_EQ(verdict("engine", 8), "budget") << "44850 pairs";
+  EXPECT_EQ(verdict("grid/batch", 8), "budget");
 }
 
 TEST(MethodTrial, TellsWhoTakesBadInput) {

@@ -30,7 +30,7 @@ StabilityResults calm_results() {
   StabilityResults results;
   for (const accuracy::Method& method : accuracy::methods()) {
     results.calm[method.name] = exact_trial(2);
-    for (const accuracy::Regime& regime : accuracy::regimes()) {
+    for (const accuracy::Regime& regime : stability_regimes()) {
       for (const std::string& value : regime.values) {
         results.hard[regime.id + "=" + value][method.name] = exact_trial(2);
       }
@@ -57,7 +57,7 @@ const Tile& tile_of(const HeatMap& map, const std::string& method, const std::st
 
 TEST(StabilityReport, HasAMapForEveryRegimeAndATileForEveryTrial) {
   const Report report = stability_report({}, calm_results(), false);
-  ASSERT_EQ(report.sections.at(1).maps.size(), accuracy::regimes().size());
+  ASSERT_EQ(report.sections.at(1).maps.size(), stability_regimes().size());
   for (const HeatMap& map : report.sections[1].maps) {
     EXPECT_EQ(map.tiles.size(), map.rows.size() * map.columns.size());
     for (const Tile& tile : map.tiles) {

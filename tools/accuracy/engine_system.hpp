@@ -25,6 +25,7 @@ class EngineSystem final : public baselines::System {
   void step() override;
 
   [[nodiscard]] std::vector<ObjectPair> pairs() const override { return engine_.pairs(); }
+  [[nodiscard]] bool refused() const override { return engine_.status() == StepStatus::kOverBudget; }
   [[nodiscard]] std::optional<EventTotals> events() const override { return totals_; }
   [[nodiscard]] std::optional<std::uint64_t> counted_bytes() const override { return engine_.stats().bytes(); }
 

@@ -16,10 +16,11 @@
 namespace sweepgrid::accuracy {
 namespace {
 
-constexpr std::array<std::pair<Verdict, std::string_view>, 8> kVerdicts = {{{Verdict::kCrash, "crash"},
+constexpr std::array<std::pair<Verdict, std::string_view>, 9> kVerdicts = {{{Verdict::kCrash, "crash"},
                                                                             {Verdict::kError, "error"},
                                                                             {Verdict::kOutOfMemory, "memory"},
                                                                             {Verdict::kOutOfTime, "time"},
+                                                                            {Verdict::kOverBudget, "budget"},
                                                                             {Verdict::kTakesBad, "bad"},
                                                                             {Verdict::kMisses, "misses"},
                                                                             {Verdict::kSuperset, "superset"},
@@ -64,13 +65,17 @@ class Play {
  public:
   Play(const Method& method, const KnownScript& known) : method_(method), known_(known) {}
 
-  Trial run(double seconds) {
+  Trial run(double seconds, std::uint64_t bytes) {
     double spent_ms = 0;
-    const auto system = method_.make(known_.script);
+    const auto system = method_.make(known_.script, bytes);
     std::vector<double> times;
     for (std::size_t i = 0; i < known_.script.steps.size(); ++i) {
       const double ms = 1e3 * step(*system, known_.script.steps[i]);
       spent_ms += ms;
+      if (system->refused()) {
+        judge_refusal(*system, i);
+        break;
+      }
       compare(sorted_pairs(*system), known_.pairs[i]);
       if (i == 0) {
         trial_.start_ms = ms;
@@ -87,7 +92,7 @@ class Play {
       trial_.step_ms = times[times.size() / 2];
       trial_.most_step_ms = times.back();
     }
-    if (trial_.verdict != Verdict::kOutOfTime) judge();
+    if (trial_.verdict == Verdict::kExact) judge();
     return trial_;
   }
 
@@ -120,6 +125,15 @@ class Play {
     trial_.reported_pairs += reported.size();
     trial_.missed_pairs += count_without(truth, reported);
     trial_.extra_pairs += count_without(reported, truth);
+  }
+
+  // A refused step must have left nothing behind.
+  void judge_refusal(const baselines::System& system, std::size_t step) {
+    const std::vector<ScenePair> before = step == 0 ? std::vector<ScenePair>() : known_.pairs[step - 1];
+    trial_.verdict = Verdict::kOverBudget;
+    if (sorted_pairs(system) == before) return;
+    trial_.verdict = Verdict::kError;
+    trial_.error = "a refused step has left something behind";
   }
 
   void judge() {
@@ -173,7 +187,7 @@ std::string verdict_name(Verdict verdict) {
 Trial try_method(const Method& method, const KnownScript& known, const RunBudget& budget) {
   const RunBudget whole{budget.bytes, 4 * budget.seconds};
   const GuardedRun run =
-      run_guarded(whole, [&] { return trial_json(Play(method, known).run(budget.seconds / 2)).dump(); });
+      run_guarded(whole, [&] { return trial_json(Play(method, known).run(budget.seconds / 2, budget.bytes)).dump(); });
   Trial trial;
   if (run.end == RunEnd::kDone) {
     trial = trial_of(nlohmann::json::parse(run.text));

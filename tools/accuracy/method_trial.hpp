@@ -29,13 +29,14 @@ enum class Verdict {
   kError,  ///< an exception other than those below
   kOutOfMemory,
   kOutOfTime,
-  kTakesBad,  ///< took a box with a NaN or min > max for good
-  kMisses,    ///< did not tell of a pair
-  kSuperset,  ///< told of pairs that are none
+  kOverBudget,  ///< refused a step for want of memory, and was as before it
+  kTakesBad,    ///< took a box with a NaN or min > max for good
+  kMisses,      ///< did not tell of a pair
+  kSuperset,    ///< told of pairs that are none
   kExact,
 };
 
-/// "crash", "error", "memory", "time", "bad", "misses", "superset", "exact".
+/// "crash", "error", "memory", "time", "budget", "bad", "misses", "superset", "exact".
 [[nodiscard]] std::string verdict_name(Verdict verdict);
 
 /// How a method did in a script. Counts are sums over the steps that it came to.

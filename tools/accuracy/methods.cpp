@@ -34,8 +34,10 @@ Config on_one_thread(CellKind kind) {
 }
 
 Method engine_method(const std::string& name, const std::string& about, CellKind kind) {
-  return {name, about, Claim::kExact, true, [kind](const SceneScript& script) {
-            return std::make_unique<EngineSystem>(on_one_thread(kind), false, script.objects);
+  return {name, about, Claim::kExact, true, [kind](const SceneScript& script, std::uint64_t bytes) {
+            Config config = on_one_thread(kind);
+            config.step_bytes = bytes / 4;  // lists double as they grow
+            return std::make_unique<EngineSystem>(config, false, script.objects);
           }};
 }
 
@@ -79,7 +81,7 @@ std::uint32_t most_at_once(const SceneScript& script) {
 }
 
 Method axis_sweep(const char* name, const char* about, baselines::AxisSweepBits bits) {
-  return {name, about, Claim::kSuperset, false, [bits](const SceneScript& script) {
+  return {name, about, Claim::kSuperset, false, [bits](const SceneScript& script, std::uint64_t) {
             return baselines::make_bullet_axis_sweep(bits, world_of(script), script.objects, most_at_once(script));
           }};
 }
@@ -88,27 +90,29 @@ Method axis_sweep(const char* name, const char* about, baselines::AxisSweepBits 
 std::vector<Method> make_methods() {
   std::vector<Method> methods;
   for (const auto& [name, kind] : kKinds) {
-    methods.push_back(
-        {std::string("cell/") + name, "one cell over everything", Claim::kExact, false,
-         [options = CellOptions{kind}](const SceneScript&) { return std::make_unique<CellSystem>(options); }});
+    methods.push_back({std::string("cell/") + name, "one cell over everything", Claim::kExact, false,
+                       [options = CellOptions{kind}](const SceneScript&, std::uint64_t) {
+                         return std::make_unique<CellSystem>(options);
+                       }});
   }
   for (const auto& [name, kind] : kKinds) {
     methods.push_back(engine_method(std::string("grid/") + name, "the engine with cells of this kind alone", kind));
   }
   methods.push_back(engine_method("engine", "the engine as it configures itself", CellKind::kAuto));
   methods.push_back({"octree", "dynamic octree, the paper's baseline", Claim::kExact, true,
-                     [](const SceneScript&) { return std::make_unique<OctreeSystem>(); }});
+                     [](const SceneScript&, std::uint64_t) { return std::make_unique<OctreeSystem>(); }});
 #ifdef SWEEPGRID_WITH_BULLET
   methods.push_back({"bullet/dbvt", "btDbvtBroadphase, exact boxes", Claim::kExact, false,
-                     [](const SceneScript& script) { return baselines::make_bullet(script.objects); }});
+                     [](const SceneScript& script, std::uint64_t) { return baselines::make_bullet(script.objects); }});
   methods.push_back(axis_sweep("bullet/axis16", "btAxisSweep3, 16 bits per coordinate", baselines::AxisSweepBits::k16));
   methods.push_back(
       axis_sweep("bullet/axis32", "bt32BitAxisSweep3, 32 bits per coordinate", baselines::AxisSweepBits::k32));
 #endif
 #ifdef SWEEPGRID_WITH_FCL
-  methods.push_back(
-      {"fcl", "DynamicAABBTreeCollisionManager, moved leaves updated", Claim::kExact, false,
-       [](const SceneScript& script) { return baselines::make_fcl(baselines::FclUpkeep::kUpdate, script.objects); }});
+  methods.push_back({"fcl", "DynamicAABBTreeCollisionManager, moved leaves updated", Claim::kExact, false,
+                     [](const SceneScript& script, std::uint64_t) {
+                       return baselines::make_fcl(baselines::FclUpkeep::kUpdate, script.objects);
+                     }});
 #endif
   return methods;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -22,8 +23,8 @@ struct Method {
   Claim claim = Claim::kExact;
   /// Boxes with a NaN or min > max are refused by queue() with std::invalid_argument.
   bool refuses_bad_input = false;
-  /// A system for the objects and the world of a script. One thread.
-  std::function<std::unique_ptr<baselines::System>(const SceneScript&)> make;
+  /// A system for the objects and the world of a script, which may use so many bytes of memory. One thread.
+  std::function<std::unique_ptr<baselines::System>(const SceneScript&, std::uint64_t bytes)> make;
 };
 
 /// Every kind of cell by itself ("cell/classic") and in the grid ("grid/classic"), the engine as it configures itself

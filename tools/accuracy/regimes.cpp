@@ -80,6 +80,15 @@ const std::vector<Regime>& regimes() {
   return all;
 }
 
+const Regime& memory_regime() {
+  static const Regime regime = {"memory",
+                                "All at one point, little memory",
+                                "MB of memory",
+                                moving_but("clusters=1,speed=0.001,spread=0"),
+                                {"2048", "512", "128", "32", "8"}};
+  return regime;
+}
+
 std::string scene_at(const Regime& regime, std::string_view value, std::uint64_t objects, std::uint64_t steps) {
   return fmt::format("{},n={},steps={}", fmt::format(fmt::runtime(regime.scene), value), objects, steps);
 }

@@ -20,6 +20,9 @@ struct Regime {
 /// Every regime of the stability map.
 [[nodiscard]] const std::vector<Regime>& regimes();
 
+/// All objects at one point, as many pairs as there can be, with less and less memory: the values are MB.
+[[nodiscard]] const Regime& memory_regime();
+
 /// The scene of a regime at one of its values.
 [[nodiscard]] std::string scene_at(const Regime& regime, std::string_view value, std::uint64_t objects,
                                    std::uint64_t steps);

@@ -38,6 +38,9 @@ class System {
   /// Overlapping pairs as of the latest step, in any order. Not timed.
   [[nodiscard]] virtual std::vector<ObjectPair> pairs() const = 0;
 
+  /// Whether the latest step was refused for want of memory, and everything is as it was before it.
+  [[nodiscard]] virtual bool refused() const { return false; }
+
   /// Events so far; absent when the system has none.
   [[nodiscard]] virtual std::optional<EventTotals> events() const { return std::nullopt; }
 

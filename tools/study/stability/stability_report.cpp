@@ -33,6 +33,8 @@ std::string mark(Verdict verdict) {
       return "time";
     case Verdict::kOutOfMemory:
       return "mem";
+    case Verdict::kOverBudget:
+      return "over";
     case Verdict::kError:
       return "err";
     case Verdict::kCrash:
@@ -105,7 +107,7 @@ bool crowded(const Trial& trial, const StabilitySize& size) {
 Record record_of(const Method& method, const StabilitySize& size, const StabilityResults& results) {
   Record record;
   std::vector<std::pair<Verdict, std::vector<std::string>>> failures;
-  for (const Regime& regime : accuracy::regimes()) {
+  for (const Regime& regime : stability_regimes()) {
     double dearest = 0;
     std::vector<Verdict> seen;
     for (const std::string& value : regime.values) {
@@ -220,10 +222,12 @@ Report stability_report(const StabilitySize& size, const StabilityResults& resul
   maps.text = fmt::format(
       "Colours: cost of a step relative to the same method's in the calm scene. Marks: = exact; + superset; miss: "
       "pairs "
-      "were missed; bad: took a box with a NaN or min > max; time: a trial's {} s did not suffice; mem: nor did {} MB; "
+      "were missed; bad: took a box with a NaN or min > max; time: a trial's {} s did not suffice; mem: nor did {} MB, "
+      "or what is said below; "
+      "over: refused a step for want of memory, and was as before it; "
       "err: an exception; dead: the process crashed. Pairs are compared with T0 after every step.",
       size.budget.seconds, size.budget.bytes >> 20);
-  for (const Regime& regime : accuracy::regimes()) maps.maps.push_back(regime_map(regime, results));
+  for (const Regime& regime : stability_regimes()) maps.maps.push_back(regime_map(regime, results));
   report.sections.push_back(growth_section(size, results));
   return report;
 }

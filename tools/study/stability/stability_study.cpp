@@ -52,16 +52,20 @@ void add_growing_points(const StabilitySize& size, std::vector<StudyPoint>& poin
 
 std::vector<StudyPoint> study_points(const StabilitySize& size) {
   std::vector<StudyPoint> points;
-  const auto add = [&](const std::string& name, double cost, const std::string& scene) {
+  const auto add = [&](const std::string& name, double cost, const std::string& scene,
+                       const accuracy::RunBudget& budget) {
     points.push_back(
-        {name, cost, [&size, scene] { return try_all(accuracy::methods(), scene, size.steps, size.budget); }});
+        {name, cost, [&size, scene, budget] { return try_all(accuracy::methods(), scene, size.steps, budget); }});
   };
-  add(calm_name(), 1, accuracy::calm_scene(size.objects, size.steps));
-  for (const Regime& regime : accuracy::regimes()) {
+  add(calm_name(), 1, accuracy::calm_scene(size.objects, size.steps), size.budget);
+  for (const Regime& regime : stability_regimes()) {
     for (std::size_t i = 0; i < regime.values.size(); ++i) {
       const std::string& value = regime.values[i];
+      accuracy::RunBudget budget = size.budget;
+      if (regime.id == accuracy::memory_regime().id) budget.bytes = std::stoull(value) << 20;
       // What is hard takes longer.
-      add(point_name(regime, value), 1 + static_cast<double>(i), scene_at(regime, value, size.objects, size.steps));
+      add(point_name(regime, value), 1 + static_cast<double>(i), scene_at(regime, value, size.objects, size.steps),
+          budget);
     }
   }
   add_growing_points(size, points);
@@ -79,7 +83,7 @@ bool engine_is_exact(const SceneTrials& trials) {
     if (method != "engine" && !method.starts_with("grid/")) continue;
     if (trial.missed_pairs > 0 || trial.extra_pairs > 0) return false;
     if (trial.verdict != Verdict::kExact && trial.verdict != Verdict::kOutOfTime &&
-        trial.verdict != Verdict::kOutOfMemory) {
+        trial.verdict != Verdict::kOutOfMemory && trial.verdict != Verdict::kOverBudget) {
       return false;
     }
   }
@@ -115,6 +119,12 @@ std::pair<StabilityResults, bool> collect(const StabilitySize& size, const std::
 std::string calm_name() { return "calm"; }
 
 std::string point_name(const Regime& regime, const std::string& value) { return regime.id + "=" + value; }
+
+std::vector<Regime> stability_regimes() {
+  std::vector<Regime> all = accuracy::regimes();
+  all.push_back(accuracy::memory_regime());
+  return all;
+}
 
 std::vector<Regime> growing_regimes() {
   std::vector<Regime> some;

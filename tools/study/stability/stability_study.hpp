@@ -27,6 +27,9 @@ struct StabilitySize {
   [[nodiscard]] static StabilitySize of(bool quick);
 };
 
+/// accuracy::regimes() and accuracy::memory_regime().
+[[nodiscard]] std::vector<accuracy::Regime> stability_regimes();
+
 /// The trials of one scene, by method.
 using SceneTrials = std::map<std::string, accuracy::Trial>;
 
