@@ -19,8 +19,8 @@ enum class Reduction {
   kWitnessCounts,
 };
 
-/// Settings of an engine. Events do not depend on any of them but `envelope`; time and memory do. The defaults suit
-/// most scenes.
+/// Settings of an engine. Of them, only `envelope` has a say in which pairs there are, and `step_bytes` in whether a
+/// step is done or refused; the others in time and memory. The defaults suit most scenes.
 struct Config {
   /// Kind of the cells and its parameters.
   CellOptions cell;

@@ -1,0 +1,200 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstring>
+
+#include <sweepgrid/engine/engine_core.hpp>
+#include <sweepgrid/grid/levels.inl.hpp>
+
+namespace sweepgrid {
+
+// The first stage of a step: what was queued becomes calls to cells.
+
+namespace engine_core {
+
+/// Blocks of objects for each worker: fewer, because each has a queue to every shard of a grid.
+inline constexpr std::size_t kBlocksPerWorker = 3;
+
+/// Share of objects that must have changed for cells to ask for boxes instead of being told.
+inline constexpr double kDenseShare = 0.4;
+
+}  // namespace engine_core
+
+template <class Scalar, int Dim>
+void EngineCore<Scalar, Dim>::plan_route(std::vector<std::uint64_t>& costs) {
+  follow_scene();
+  objects_.nothing_queued();
+  const std::uint32_t granules = objects_.granules();
+  std::vector<std::uint32_t> marked;
+  for (std::uint32_t granule = 0; granule < granules; ++granule) {
+    if (regridding_ || relocating(granule) || objects_.granule_marked(granule)) marked.push_back(granule);
+  }
+  const bool rows = config_.cell.kind == CellKind::kRows || config_.cell.kind == CellKind::kAuto;
+  dense_ = rows && !regridding_ && most_changed(marked);
+  const auto workers = static_cast<std::size_t>(executor_->concurrency());
+  const bool small = workers == 1 || marked.size() < 8;
+  const std::size_t wanted = small ? 1 : std::min(marked.size(), engine_core::kBlocksPerWorker * workers);
+  blocks_.resize(wanted);
+  for (std::size_t b = 0; b < wanted; ++b) {
+    RouteBlock& block = blocks_[b];
+    const std::size_t first = b * marked.size() / wanted;
+    const std::size_t end = (b + 1) * marked.size() / wanted;
+    block.first_granule = marked[first];
+    block.last_granule = marked[end - 1];
+    block.counters = StepCounters{};
+    block.retired.clear();
+    block.relocated.clear();
+    costs.push_back(end - first);
+  }
+  for (const GridIndex grid : levels_.live()) levels_.grid(grid).begin_step(wanted, dense_, &budget_);
+}
+
+// Judged by every 16th of the granules with a mark; in the others nothing has changed.
+template <class Scalar, int Dim>
+bool EngineCore<Scalar, Dim>::most_changed(const std::vector<std::uint32_t>& granules) const {
+  const double marked = static_cast<double>(granules.size()) / std::max(1U, objects_.granules());
+  if (marked <= engine_core::kDenseShare) return false;
+  std::size_t seen = 0;
+  std::size_t changed = 0;
+  for (std::size_t i = 0; i < granules.size(); i += 16) {
+    const ObjectId first = granules[i] * Objects::kGranule;
+    const ObjectId end = std::min(objects_.bound() - first, Objects::kGranule) + first;
+    for (ObjectId object = first; object < end; ++object) {
+      changed += (objects_.state(object) & Objects::kUpdated) != 0 ? 1 : 0;
+    }
+    seen += end - first;
+  }
+  return marked * static_cast<double>(changed) > engine_core::kDenseShare * static_cast<double>(seen);
+}
+
+template <class Scalar, int Dim>
+void EngineCore<Scalar, Dim>::route(std::size_t block) {
+  RouteBlock& out = blocks_[block];
+  for (const GridIndex grid : levels_.live()) levels_.grid(grid).begin_block(block);
+  for (std::uint32_t granule = out.first_granule; granule <= out.last_granule; ++granule) {
+    if (!regridding_ && !relocating(granule) && !objects_.granule_marked(granule)) continue;
+    route_granule(block, granule);
+  }
+  out.calls = 0;
+  for (const GridIndex grid : levels_.live()) {
+    levels_.grid(grid).end_block(block);
+    out.calls += levels_.grid(grid).calls(block);
+  }
+}
+
+// First the objects, then what is to be done with them: so their records can be on their way to the cache meanwhile.
+template <class Scalar, int Dim>
+void EngineCore<Scalar, Dim>::route_granule(std::size_t block, std::uint32_t granule) {
+  constexpr std::uint64_t kOnes = ~std::uint64_t{0} / 0xff;  // 1 in each byte
+  constexpr std::uint64_t kTops = 0x80 * kOnes;
+  objects_.unmark_granule(granule);
+  const ObjectId first = granule * Objects::kGranule;
+  const std::uint32_t count = std::min(objects_.bound() - first, Objects::kGranule);
+  const std::uint8_t wanted = regridding_ || relocating(granule) ? 0xff : Objects::kQueued;
+  const std::uint8_t* const states = &objects_.state(first);  // a granule is contiguous
+  std::array<std::uint8_t, Objects::kGranule> chosen;
+  std::uint32_t used = 0;
+  constexpr std::uint32_t kWord = sizeof(std::uint64_t);
+  for (std::uint32_t i = 0; i < count; i += kWord) {
+    std::uint64_t bytes = 0;
+    std::memcpy(&bytes, states + i, std::min(kWord, count - i));
+    bytes &= wanted * kOnes;
+    // The top bit of each byte that is not 0.
+    std::uint64_t marked = (bytes | ((bytes & ~kTops) + ~kTops)) & kTops;
+    for (; marked != 0; marked &= marked - 1) {
+      chosen[used++] = static_cast<std::uint8_t>(i + static_cast<std::uint32_t>(std::countr_zero(marked)) / 8);
+    }
+  }
+  Record* const records = &objects_.record(first);
+  RouteBlock& out = blocks_[block];
+  constexpr std::uint32_t kAhead = 12;
+  for (std::uint32_t i = 0; i < std::min(kAhead, used); ++i) __builtin_prefetch(&records[chosen[i]], 1);
+  for (std::uint32_t i = 0; i < used; ++i) {
+    if (i + kAhead < used) __builtin_prefetch(&records[chosen[i + kAhead]], 1);
+    route_object(block, first + chosen[i], records[chosen[i]], out);
+  }
+}
+
+template <class Scalar, int Dim>
+inline void EngineCore<Scalar, Dim>::route_object(std::size_t block, ObjectId object, Record& record, RouteBlock& out) {
+  std::uint8_t& state = objects_.state(object);
+  if ((state & Objects::kQueued) == Objects::kUpdated) {
+    ++out.counters.updates;
+    note_change(record, state);
+    route_moved(block, object, record, out);
+    state = Objects::kLive;
+  } else if ((state & Objects::kQueued) != 0) {
+    const bool erased = (state & Objects::kErased) != 0;
+    if ((state & Objects::kInserted) == 0) {
+      note_change(record, state);
+      ++out.counters.erases;
+      if (!regridding_) levels_.grid(record.grid).route_erase(block, object, record.before);
+      show(block, object, record.grid, &record.before, nullptr);
+    } else if (!erased) {
+      note_change(record, state);
+      ++out.counters.inserts;
+      record.grid = levels_.home(LevelsType::width(record.box));
+      levels_.grid(record.grid).route_insert(block, object, record.box);
+      show(block, object, record.grid, nullptr, &record.box);
+    }
+    if (erased) {
+      objects_.retire(object);
+      out.retired.push_back(object);
+      return;
+    }
+    state = Objects::kLive;
+  } else if (regridding_) {
+    levels_.grid(record.grid).route_insert(block, object, record.box);
+  }
+  if (relocating(object / Objects::kGranule)) relocate(block, object, record, out);
+}
+
+template <class Scalar, int Dim>
+inline void EngineCore<Scalar, Dim>::note_change(Record& record, std::uint8_t state) const {
+  record.change = state;
+  record.changed_at = steps_ + 1;
+  record.grid_before = record.grid;
+}
+
+template <class Scalar, int Dim>
+inline void EngineCore<Scalar, Dim>::route_moved(std::size_t block, ObjectId object, Record& record, RouteBlock& out) {
+  const double width = LevelsType::width(record.box);
+  GridType& grid = levels_.grid(record.grid);
+  if (regridding_) {
+    grid.route_insert(block, object, record.box);
+  } else if (levels_.holds(record.grid, width)) {
+    out.counters.migrations += grid.route_update(block, object, record.before, record.box) ? 1 : 0;
+    if (levels_.live().size() > 1) show(block, object, record.grid, &record.before, &record.box);
+  } else {  // too wide for its grid: it leaves for another, and the two sides of the step are shown apart
+    ++out.counters.migrations;
+    grid.route_erase(block, object, record.before);
+    show(block, object, record.grid, &record.before, nullptr);
+    record.grid = levels_.home(width);
+    levels_.grid(record.grid).route_insert(block, object, record.box);
+    show(block, object, record.grid, nullptr, &record.box);
+  }
+}
+
+// Shows a changed object to the other grids. In coarser ones it meets everybody; in finer ones only those that rest,
+// for the others are shown to its own grid.
+template <class Scalar, int Dim>
+void EngineCore<Scalar, Dim>::show(std::size_t block, ObjectId object, GridIndex home, const BoxType* before,
+                                   const BoxType* after) {
+  for (const GridIndex other : levels_.live()) {
+    if (other == home) continue;
+    levels_.grid(other).route_visit(block, object, before, after, !levels_.coarser(other, home));
+  }
+}
+
+template <class Scalar, int Dim>
+void EngineCore<Scalar, Dim>::relocate(std::size_t block, ObjectId object, const Record& record, RouteBlock& out) {
+  const GridIndex home = levels_.home(LevelsType::width(record.box));
+  if (home == record.grid) return;
+  levels_.grid(record.grid).route_detach(block, object, record.box);
+  levels_.grid(home).route_attach(block, object, record.box);
+  out.relocated.emplace_back(object, home);
+}
+
+}  // namespace sweepgrid
