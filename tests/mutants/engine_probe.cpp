@@ -208,7 +208,7 @@ int probe_scenes() {
   const Config fine = config_of(CellKind::kRows, Reduction::kSingleReporter, 1);
   const Config counts = config_of(CellKind::kRows, Reduction::kWitnessCounts, 0);
   if (probe_refusals(rows, kFleeting) != 0 || probe_refusals(batch, kSizes) != 0) return 1;
-  if (probe_refusals(counts, kFleeting) != 0) return 1;
+  if (probe_refusals(counts, kFleeting) != 0 || probe_scene(counts, kFollowed) != 0) return 1;
   if (probe_following(config_of(CellKind::kRows, Reduction::kSingleReporter, 0)) != 0) return 1;
   for (const auto& regime : {kByTurns, kSizes, kGiants, kFollowed}) {
     if (probe_scene(rows, regime) != 0 || probe_scene(batch, regime) != 0) return 1;
