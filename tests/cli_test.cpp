@@ -341,6 +341,13 @@ TEST_F(Program, TakesASetupFromAFileAndVerifiesWhatItPromises) {
   EXPECT_GT(may_miss.at("missing"), 0);
 }
 
+// Of sizes and types of boxes at which compilers choose other instructions.
+TEST_F(Program, VerifiesTheWholeRecordingOfGrains) {
+  const std::string recording = std::string(SWEEPGRID_RECORDINGS) + "/lammps_pour_2200.lammpstrj.xz";
+  const Result result = run("run --verify --threads 1 '" + recording + "'");
+  EXPECT_EQ(result.status, 0) << result.out << result.err;
+}
+
 TEST_F(Program, RefusesASetupThatIsNoneAndNamesWhy) {
   const std::pair<std::string, std::string> cases[] = {
       {"{", "setup.json: "},

@@ -42,7 +42,10 @@ class TypedSceneEngine final : public SceneEngine {
   }
 
   void as_taken(std::vector<SceneBox>& boxes) const override {
-    for (SceneBox& box : boxes) box = widen_box<Scalar, Dim>(convert_(box));
+    // By way of memory: g++ 12 leaves the rounding of some ends out where one loop does both.
+    std::vector<BoxType> taken;
+    convert_all(boxes, taken);
+    for (std::size_t i = 0; i < boxes.size(); ++i) boxes[i] = widen_box<Scalar, Dim>(taken[i]);
   }
 
   [[nodiscard]] std::vector<Pair<SceneKey>> pairs() const override { return engine_.pairs(); }
