@@ -21,7 +21,8 @@ template <class Scalar, int Dim>
   return result;
 }
 
-/// The same numbers in double, exactly. Axes that `box` has not are [0, 0].
+/// The same numbers in double, exactly. Axes that `box` has not are [0, 0]. Of boxes in memory: in one expression with
+/// round_box(), g++ 12 vectorises the rounding of some ends away.
 template <class Scalar, int Dim>
 [[nodiscard]] SceneBox widen_box(const Box<Scalar, Dim>& box) {
   SceneBox result{};
