@@ -103,7 +103,7 @@ class Engine {
   /// fail.
   const Events<Key>& step();
 
-  /// What became of the latest step(); kDone before the first one.
+  /// What became of the latest step() that did not throw; kDone before the first one.
   [[nodiscard]] StepStatus status() const { return status_; }
   /// Config::step_bytes of later steps.
   void set_step_bytes(std::optional<std::uint64_t> bytes) { core_.set_step_bytes(bytes); }

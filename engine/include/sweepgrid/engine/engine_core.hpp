@@ -30,7 +30,7 @@ class EngineCore {
   using Objects = ObjectTable<Scalar, Dim>;
 
   /// Throws std::invalid_argument that names the setting. `event_bytes`: what the lists of an event take in all.
-  explicit EngineCore(Config config, std::size_t event_bytes = 3 * sizeof(PairKey));
+  EngineCore(Config config, std::size_t event_bytes);
   ~EngineCore();
 
   [[nodiscard]] Objects& objects() { return objects_; }
