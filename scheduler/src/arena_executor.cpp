@@ -8,6 +8,7 @@
 #include <oneapi/tbb/partitioner.h>
 #include <oneapi/tbb/task_group.h>
 
+#include <sweepgrid/scheduler/floating_point_mode.hpp>
 #include <sweepgrid/scheduler/host_arena.hpp>
 
 namespace sweepgrid {
@@ -36,7 +37,10 @@ int ArenaExecutor::worker() const { return std::max(0, oneapi::tbb::this_task_ar
 void ArenaExecutor::for_each(std::size_t count, const std::function<void(std::size_t)>& body) {
   if (count == 0) return;
   arena_.execute([&] {
-    if (count == 1) return body(0);
+    if (count == 1) {
+      const FloatingPointMode mode;
+      return body(0);
+    }
     // Isolated from the host twice over. What it cancels does not cut this short; and the thread that waits here for
     // the last body takes up no task of the host's or of another engine's, which would hold up this one.
     oneapi::tbb::task_group_context context(oneapi::tbb::task_group_context::isolated);
@@ -44,6 +48,7 @@ void ArenaExecutor::for_each(std::size_t count, const std::function<void(std::si
       oneapi::tbb::parallel_for(
           oneapi::tbb::blocked_range<std::size_t>(0, count),
           [&body](const oneapi::tbb::blocked_range<std::size_t>& range) {
+            const FloatingPointMode mode;
             for (std::size_t i = range.begin(); i != range.end(); ++i) body(i);
           },
           oneapi::tbb::simple_partitioner(), context);
@@ -52,7 +57,10 @@ void ArenaExecutor::for_each(std::size_t count, const std::function<void(std::si
 }
 
 void ArenaExecutor::execute(const std::function<void()>& work) {
-  arena_.execute([&work] { work(); });
+  arena_.execute([&work] {
+    const FloatingPointMode mode;
+    work();
+  });
 }
 
 std::shared_ptr<Executor> make_executor_in(oneapi::tbb::task_arena& arena) {

@@ -4,6 +4,7 @@
 #include <oneapi/tbb/info.h>
 
 #include <sweepgrid/scheduler/executor.hpp>
+#include <sweepgrid/scheduler/floating_point_mode.hpp>
 
 #include "arena_executor.hpp"
 
@@ -16,10 +17,14 @@ class SerialExecutor final : public Executor {
   [[nodiscard]] int worker() const override { return 0; }
 
   void for_each(std::size_t count, const std::function<void(std::size_t)>& body) override {
+    const FloatingPointMode mode;
     for (std::size_t i = 0; i != count; ++i) body(i);
   }
 
-  void execute(const std::function<void()>& work) override { work(); }
+  void execute(const std::function<void()>& work) override {
+    const FloatingPointMode mode;
+    work();
+  }
 };
 
 }  // namespace

@@ -8,6 +8,7 @@
 
 #include <oneapi/tbb/flow_graph.h>
 
+#include <sweepgrid/scheduler/floating_point_mode.hpp>
 #include <sweepgrid/scheduler/recording_executor.hpp>
 
 #include "arena_executor.hpp"
@@ -83,6 +84,7 @@ struct StageGraph::Impl {
 // Catches here rather than let oneTBB cancel the graph: a flow graph whose nodes never throw needs no reset.
 void StageGraph::Impl::run_stage(StageId id) noexcept {
   if (failed.load(std::memory_order_acquire)) return;
+  const FloatingPointMode mode;
   Stage& stage = *stages[id];
   const Clock::time_point begin = Clock::now();
   try {
@@ -140,6 +142,7 @@ StageGraph::StageId StageGraph::add(std::string name, const std::vector<StageId>
   stage->body = std::move(body);
   stage->waits = !after.empty();
   stage->run_place = [&impl, id, &added = *stage](std::size_t place) {
+    const FloatingPointMode mode;  // here too: the executor may be a client's own
     const std::uint32_t task = added.order.task(place);
     if (impl.recording) {
       impl.run_recorded(id, task);

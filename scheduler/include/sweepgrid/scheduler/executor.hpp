@@ -7,7 +7,8 @@
 namespace sweepgrid {
 
 /// Where work runs: serially on the calling thread, on oneTBB workers of its own arena, or in the host's arena.
-/// Every use of threads goes through here. Implementations are thread-safe; one executor may serve many engines.
+/// Every use of threads goes through here. Implementations are thread-safe; one executor may serve many engines. Those
+/// made here run everything in the standard FloatingPointMode, whatever the caller's is.
 class Executor {
  public:
   virtual ~Executor() = default;
