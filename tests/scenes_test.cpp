@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <memory>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -51,6 +53,19 @@ TEST(SceneFiles, EveryFormatInEveryCompressionGivesTheFramesWritten) {
       EXPECT_EQ(source->info().compression, compression);
       EXPECT_EQ(source->info().format, format == "aabbs" ? "aabbs" : "lammps");
       EXPECT_EQ(source->info().bounds, SceneBox({-10, -10, -10}, {10, 10, 10}));
+      EXPECT_EQ(play(*source), three_frames());
+    }
+  }
+}
+
+TEST(SceneFiles, BytesInMemoryAreReadAsAFileIs) {
+  for (const std::string& format : kFormats) {
+    for (const std::string& compression : kCompressions) {
+      SCOPED_TRACE(format + " " + compression);
+      const std::string bytes = scene_files::compress(content_of(format), compression);
+      const auto source = open_recording(std::make_unique<std::stringbuf>(bytes), "memory");
+      EXPECT_EQ(source->info().name, "memory");
+      EXPECT_EQ(source->info().compression, compression);
       EXPECT_EQ(play(*source), three_frames());
     }
   }

@@ -4,6 +4,8 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
+#include <utility>
 
 #include <fmt/format.h>
 #include <boost/iostreams/filter/gzip.hpp>
@@ -27,11 +29,11 @@ using namespace std::string_view_literals;
 constexpr Magic kMagics[] = {{"\x1f\x8b"sv, "gzip"}, {"\xFD\x37zXZ\0"sv, "xz"}, {"\x28\xb5\x2f\xfd"sv, "zstd"}};
 
 // Reads the first bytes and puts them back, which works for pipes as well.
-std::string first_bytes(std::filebuf& file, std::size_t count) {
+std::string first_bytes(std::streambuf& file, std::size_t count) {
   std::string bytes;
   while (bytes.size() < count) {
     const int byte = file.sbumpc();
-    if (byte == std::filebuf::traits_type::eof()) break;
+    if (byte == std::streambuf::traits_type::eof()) break;
     bytes.push_back(static_cast<char>(byte));
   }
   // A failed read at the end of the file leaves the buffer in place; the bytes are still in it.
@@ -39,16 +41,24 @@ std::string first_bytes(std::filebuf& file, std::size_t count) {
   return bytes;
 }
 
+std::unique_ptr<std::streambuf> open_file(const std::string& path) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored)) throw SceneError(fmt::format("{}: is a directory", path));
+  auto file = std::make_unique<std::filebuf>();
+  if (file->open(path, std::ios::in | std::ios::binary) == nullptr) {
+    throw SceneError(fmt::format("{}: {}", path, std::strerror(errno)));
+  }
+  return file;
+}
+
 }  // namespace
 
-ByteStream::ByteStream(std::string path) : path_(std::move(path)), compression_("none"), buffer_(kBufferSize) {
+ByteStream::ByteStream(const std::string& path) : ByteStream(open_file(path), path) {}
+
+ByteStream::ByteStream(std::unique_ptr<std::streambuf> bytes, std::string path)
+    : path_(std::move(path)), compression_("none"), bytes_(std::move(bytes)), buffer_(kBufferSize) {
   namespace io = boost::iostreams;
-  std::error_code ignored;
-  if (std::filesystem::is_directory(path_, ignored)) throw SceneError(fmt::format("{}: is a directory", path_));
-  if (file_.open(path_, std::ios::in | std::ios::binary) == nullptr) {
-    throw SceneError(fmt::format("{}: {}", path_, std::strerror(errno)));
-  }
-  const std::string start = first_bytes(file_, 6);
+  const std::string start = first_bytes(*bytes_, 6);
   for (const Magic& magic : kMagics) {
     if (start.starts_with(magic.bytes)) compression_ = magic.compression;
   }
@@ -58,7 +68,7 @@ ByteStream::ByteStream(std::string path) : path_(std::move(path)), compression_(
     content_.push(io::zstd_decompressor());
     content_.push(ZstdCutDetector());
   }
-  content_.push(file_);
+  content_.push(*bytes_);
 }
 
 bool ByteStream::fill() {

@@ -2,7 +2,8 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <fstream>
+#include <memory>
+#include <streambuf>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -11,11 +12,13 @@
 
 namespace sweepgrid {
 
-/// The content of a file, decompressed on the way if its first bytes are those of gzip, xz or zstd. Every error is a
-/// SceneError with the file's name; data that end before the compressed stream does are one.
+/// The content of a file or of other bytes, decompressed on the way if its first bytes are those of gzip, xz or zstd.
+/// Every error is a SceneError with the file's name; data that end before the compressed stream does are one.
 class ByteStream {
  public:
-  explicit ByteStream(std::string path);
+  explicit ByteStream(const std::string& path);
+  /// `path`: what errors call the bytes.
+  ByteStream(std::unique_ptr<std::streambuf> bytes, std::string path);
 
   [[nodiscard]] const std::string& path() const { return path_; }
   /// "none", "gzip", "xz" or "zstd".
@@ -46,7 +49,7 @@ class ByteStream {
 
   std::string path_;
   std::string compression_;
-  std::filebuf file_;
+  std::unique_ptr<std::streambuf> bytes_;
   boost::iostreams::filtering_istreambuf content_;
   std::vector<char> buffer_;
   std::size_t begin_ = 0;  // unread bytes: [begin_, end_)

@@ -13,17 +13,30 @@
 
 namespace sweepgrid {
 
-std::unique_ptr<SceneSource> open_scene(const std::string& spec, const SceneOptions& options) {
-  if (const auto params = parse_generator(spec)) return std::make_unique<GeneratedScene>(spec, *params);
-  auto content = std::make_unique<ByteStream>(spec);
+namespace {
+
+std::unique_ptr<SceneSource> source_of(std::unique_ptr<ByteStream> content, const SceneOptions& options) {
+  const std::string& name = content->path();
   const std::string_view start = content->peek(AabbsSource::kHeaderSize);
-  if (start.empty()) throw SceneError(fmt::format("{}: the file is empty", spec));
+  if (start.empty()) throw SceneError(fmt::format("{}: the file is empty", name));
   if (LammpsSource::recognises(start)) return std::make_unique<LammpsSource>(std::move(content), options.diameter);
   // The name counts only where the content does not decide: to say what is wrong with a damaged .aabbs header.
-  if (AabbsSource::recognises(start) || spec.find(".aabbs") != std::string::npos) {
+  if (AabbsSource::recognises(start) || name.find(".aabbs") != std::string::npos) {
     return std::make_unique<AabbsSource>(std::move(content));
   }
-  throw SceneError(fmt::format("{}: neither a LAMMPS text dump (no 'ITEM:' at its start) nor .aabbs", spec));
+  throw SceneError(fmt::format("{}: neither a LAMMPS text dump (no 'ITEM:' at its start) nor .aabbs", name));
+}
+
+}  // namespace
+
+std::unique_ptr<SceneSource> open_scene(const std::string& spec, const SceneOptions& options) {
+  if (const auto params = parse_generator(spec)) return std::make_unique<GeneratedScene>(spec, *params);
+  return source_of(std::make_unique<ByteStream>(spec), options);
+}
+
+std::unique_ptr<SceneSource> open_recording(std::unique_ptr<std::streambuf> bytes, const std::string& name,
+                                            const SceneOptions& options) {
+  return source_of(std::make_unique<ByteStream>(std::move(bytes), name), options);
 }
 
 }  // namespace sweepgrid

@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <optional>
+#include <streambuf>
 #include <string>
 
 #include "scenes/scene_source.hpp"
@@ -17,5 +18,10 @@ struct SceneOptions {
 /// "uniform:n=1000,steps=10" (see generator_params.hpp). A file with the name of a generator is reached as ./NAME.
 /// Throws SceneError.
 [[nodiscard]] std::unique_ptr<SceneSource> open_scene(const std::string& spec, const SceneOptions& options = {});
+
+/// Reads a recording from `bytes`, for example a std::stringbuf, which it keeps; format and compression are told by the
+/// content. `name`: of the scene and in errors. Throws SceneError.
+[[nodiscard]] std::unique_ptr<SceneSource> open_recording(std::unique_ptr<std::streambuf> bytes,
+                                                          const std::string& name, const SceneOptions& options = {});
 
 }  // namespace sweepgrid
