@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 #include <tuple>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -101,6 +102,10 @@ TEST(EngineKeys, MayBeBoxedByEigen) {
   Engine<float, 2> flat;
   const Handle dynamic = flat.insert(1, Eigen::AlignedBox<float, 2>(Eigen::Vector2f(-1, -1), Eigen::Vector2f(1, 1)));
   EXPECT_EQ(flat.box(dynamic), Box2({-1, -1}, {1, 1}));
+  // What would be rounded or cut off on the way does not compile.
+  static_assert(!std::is_convertible_v<EigenBox, Engine<std::int16_t, 3>::BoxType>);
+  static_assert(!std::is_convertible_v<EigenBox, Engine<float, 3>::BoxType>);
+  static_assert(std::is_convertible_v<Eigen::AlignedBox3f, Engine<double, 3>::BoxType>);
 }
 
 /// A key that sometimes cannot be stored.

@@ -11,6 +11,7 @@
 #include <sweepgrid/sap/endpoint.hpp>
 #include <sweepgrid/sap/ordered_box.hpp>
 
+#include "client_mode.hpp"
 #include "op_script.hpp"
 
 namespace sweepgrid {
@@ -107,17 +108,87 @@ TEST(Box, ANaNOrAnInvertedAxisIsNotValid) {
   }
 }
 
-struct ForeignBox {
-  std::vector<double> lower;
-  std::vector<double> upper;
-  [[nodiscard]] const std::vector<double>& min() const { return lower; }
-  [[nodiscard]] const std::vector<double>& max() const { return upper; }
+/// Values that are easily taken for others: denormals, zeros, infinities, NaNs.
+template <class Real>
+std::vector<Real> delicate() {
+  using Limits = std::numeric_limits<Real>;
+  std::vector<Real> values = {0,
+                              Limits::denorm_min(),
+                              3 * Limits::denorm_min(),
+                              Limits::min() - Limits::denorm_min(),
+                              Limits::min(),
+                              1,
+                              Limits::max(),
+                              Limits::infinity(),
+                              Limits::quiet_NaN()};
+  for (std::size_t i = values.size(); i-- > 0;) values.push_back(-values[i]);
+  return values;
+}
+
+template <class Real>
+void check_comparisons_of_boxes() {
+  // What is true of the values, found in the standard mode; a, b and c, d as the ends of two boxes on one axis.
+  struct Case {
+    Real a, b, c, d;
+    bool valid, overlap, equal;
+  };
+  std::vector<Case> cases;
+  const std::vector<Real> values = delicate<Real>();
+  for (const Real a : values) {
+    for (const Real b : values) {
+      for (const Real c : values) {
+        for (const Real d : values) {
+          if (c <= d) cases.push_back({a, b, c, d, a <= b, a <= b && a <= d && c <= b, a == c && b == d});
+        }
+      }
+    }
+  }
+  for (const oracle::ClientMode::Kind kind : oracle::ClientMode::kinds()) {
+    std::size_t wrong = 0;
+    {
+      const oracle::ClientMode client(kind);
+      for (const Case& c : cases) {
+        const Box<Real, 3> box({0, c.a, -1}, {1, c.b, -1});
+        const Box<Real, 3> other({0, c.c, -1}, {1, c.d, -1});
+        wrong += box.valid() == c.valid ? 0 : 1;
+        wrong += (box.valid() && box.overlaps(other)) == c.overlap ? 0 : 1;
+        wrong += (box.valid() && box == other) == c.equal ? 0 : 1;
+      }
+    }
+    EXPECT_EQ(wrong, 0U) << kind.flush << ' ' << kind.rounding;
+  }
+}
+
+TEST(Box, IsComparedByItsBitsInEveryMode) {
+  check_comparisons_of_boxes<float>();
+  check_comparisons_of_boxes<double>();
+}
+
+template <class Real>
+struct ForeignBoxOf {
+  std::vector<Real> lower;
+  std::vector<Real> upper;
+  [[nodiscard]] const std::vector<Real>& min() const { return lower; }
+  [[nodiscard]] const std::vector<Real>& max() const { return upper; }
 };
+using ForeignBox = ForeignBoxOf<double>;
 
 TEST(Box, TakesTheCornersOfAnythingLikeABox) {
   const Box<double, 2> box = ForeignBox{{1, 2}, {3, 4}};
   EXPECT_EQ(box, (Box<double, 2>({1, 2}, {3, 4})));
   static_assert(!std::is_constructible_v<Box<float, 2>, int>);
+}
+
+template <class To, class From>
+inline constexpr bool kTakes = std::is_convertible_v<ForeignBoxOf<From>, Box<To, 2>>;
+
+TEST(Box, TakesNoCornersThatItCannotHold) {
+  static_assert(kTakes<double, float> && kTakes<double, std::int32_t> && kTakes<float, std::int16_t>);
+  static_assert(kTakes<std::int32_t, std::int16_t> && kTakes<std::int32_t, std::uint16_t>);
+  static_assert(!kTakes<std::int16_t, double> && !kTakes<std::int32_t, float> && !kTakes<float, double>);
+  static_assert(!kTakes<float, std::int32_t> && !kTakes<double, std::int64_t> && !kTakes<double, long double>);
+  static_assert(!kTakes<std::int16_t, std::int32_t> && !kTakes<std::uint32_t, std::int16_t>);
+  static_assert(!kTakes<std::int16_t, std::uint16_t> && !kTakes<std::uint16_t, std::int16_t>);
 }
 
 template <class Scalar>

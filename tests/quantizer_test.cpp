@@ -1,6 +1,7 @@
 // Quantised boxes miss no pair, wherever they lie, and hold what they were made of.
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -10,6 +11,8 @@
 #include <vector>
 
 #include <sweepgrid/sap/quantizer.hpp>
+
+#include "client_mode.hpp"
 
 namespace sweepgrid {
 namespace {
@@ -113,6 +116,34 @@ TYPED_TEST(QuantizerOf, BoxesThatAreNotValidDoNotBecomeValid) {
   const Quantizer<TypeParam, 2> quantize({0, 0}, 1);
   EXPECT_FALSE(quantize({{0, 0.6}, {1, 0.5}}).valid());
   EXPECT_FALSE(quantize({{0, std::nan("")}, {1, 1}}).valid());
+}
+
+TYPED_TEST(QuantizerOf, GivesTheSameBoxesInEveryMode) {
+  std::vector<Quantizer<TypeParam, 2>> quantizers;
+  for (const double resolution : {1e-300, 1e-3, 0.7, 1e300}) quantizers.push_back({{0.3, -2}, resolution});
+  std::vector<World> boxes;
+  std::mt19937_64 random(9);
+  for (int i = 0; i < 20'000; ++i) {
+    const auto number = [&] {
+      return i % 2 == 0 ? std::bit_cast<double>(random()) : static_cast<double>(random() % 1000) * 0.01 - 5;
+    };
+    boxes.emplace_back(World::Point{number(), number()}, World::Point{number(), number()});
+  }
+  std::vector<Box<TypeParam, 2>> expected;
+  for (const World& box : boxes) {
+    for (const auto& quantize : quantizers) expected.push_back(quantize(box));
+  }
+  for (const oracle::ClientMode::Kind kind : oracle::ClientMode::kinds()) {
+    std::size_t wrong = 0;
+    {
+      const oracle::ClientMode client(kind);
+      std::size_t next = 0;
+      for (const World& box : boxes) {
+        for (const auto& quantize : quantizers) wrong += quantize(box) == expected[next++] ? 0 : 1;
+      }
+    }
+    EXPECT_EQ(wrong, 0U) << kind.flush << ' ' << kind.rounding;
+  }
 }
 
 TEST(Quantizer, KeepsThinThingsNearZeroApartFromZero) {

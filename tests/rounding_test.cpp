@@ -2,17 +2,17 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <limits>
 #include <random>
 #include <vector>
 
 #include <sweepgrid/sap/rounding.hpp>
 
-#if defined(__SSE2__)
-#include <xmmintrin.h>
-#endif
+#include "client_mode.hpp"
 
 namespace sweepgrid {
 namespace {
@@ -20,19 +20,7 @@ namespace {
 using Double = std::numeric_limits<double>;
 using Float = std::numeric_limits<float>;
 
-/// Flushes denormals to zero, and reads them as zero, while it lives.
-class FlushToZero {
- public:
-#if defined(__SSE2__)
-  FlushToZero() : before_(_mm_getcsr()) { _mm_setcsr(before_ | 0x8040); }
-  ~FlushToZero() { _mm_setcsr(before_); }
-  FlushToZero(const FlushToZero&) = delete;
-  FlushToZero& operator=(const FlushToZero&) = delete;
-
- private:
-  unsigned before_;
-#endif
-};
+using oracle::ClientMode;
 
 std::vector<double> interesting() {
   std::vector<double> values = {0.0,
@@ -98,20 +86,115 @@ TEST(Rounding, FloatsAreTheNearestOnTheRightSide) {
   EXPECT_TRUE(std::isnan(round_above(Double::quiet_NaN())));
 }
 
-TEST(Rounding, IsTheSameWhereDenormalsAreFlushed) {
-  const std::vector<double> values = interesting();
-  std::vector<std::array<std::uint32_t, 2>> flushed;
-  {
-    const FlushToZero flush;
-    for (const double value : values) {
-      flushed.push_back(
-          {std::bit_cast<std::uint32_t>(round_below(value)), std::bit_cast<std::uint32_t>(round_above(value))});
+/// Every exponent and sign, with fractions at and beside what floats tell apart, ties, and random ones.
+std::vector<double> of_every_exponent() {
+  constexpr std::uint64_t kOnes = (std::uint64_t{1} << 52) - 1;
+  constexpr std::uint64_t kCut = (std::uint64_t{1} << 29) - 1;
+  std::mt19937_64 random(5);
+  std::vector<double> values;
+  for (std::uint64_t exponent = 0; exponent < 2048; ++exponent) {
+    std::vector<std::uint64_t> fractions = {0,
+                                            1,
+                                            kOnes,
+                                            kCut,
+                                            kCut + 1,
+                                            kCut / 2,
+                                            kCut / 2 + 1,
+                                            kCut / 2 + 2,
+                                            kOnes & ~kCut,
+                                            (kOnes & ~kCut) + 1,
+                                            kOnes / 2,
+                                            kOnes / 2 + 1};
+    for (unsigned bits = 0; bits < 52; ++bits)
+      fractions.push_back(random() & kOnes & ~((std::uint64_t{1} << bits) - 1));
+    for (const std::uint64_t fraction : fractions) {
+      for (const std::uint64_t sign : {0, 1})
+        values.push_back(std::bit_cast<double>(sign << 63 | exponent << 52 | fraction));
     }
   }
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    EXPECT_EQ(std::bit_cast<float>(flushed[i][0]), round_below(values[i])) << values[i];
-    EXPECT_EQ(std::bit_cast<float>(flushed[i][1]), round_above(values[i])) << values[i];
+  return values;
+}
+
+/// What round_below() is by definition, in the standard mode. Zero has the sign plus.
+float below_by_definition(double value) {
+  auto nearest = static_cast<float>(value);
+  if (static_cast<double>(nearest) > value) nearest = std::nextafter(nearest, -Float::infinity());
+  return nearest == 0 ? 0.0F : nearest;
+}
+
+float above_by_definition(double value) { return -below_by_definition(-value); }
+
+std::uint32_t bits_of(float value) { return std::bit_cast<std::uint32_t>(value); }
+
+TEST(Rounding, FloatsAreThoseOfTheDefinitionBitForBitInEveryMode) {
+  const std::vector<double> values = of_every_exponent();
+  std::vector<std::array<float, 2>> expected;
+  for (const double value : values) expected.push_back({below_by_definition(value), above_by_definition(value)});
+  for (const ClientMode::Kind kind : ClientMode::kinds()) {
+    std::size_t wrong = 0;
+    {
+      const ClientMode client(kind);
+      for (std::size_t i = 0; i < values.size(); ++i) {
+        wrong += bits_of(round_below(values[i])) == bits_of(expected[i][0]) ? 0 : 1;
+        wrong += bits_of(round_above(values[i])) == bits_of(expected[i][1]) ? 0 : 1;
+      }
+    }
+    EXPECT_EQ(wrong, 0U) << kind.flush << ' ' << kind.rounding;
   }
+}
+
+/// What round_outward() is by definition, in the standard mode.
+template <int Dim>
+Box<float, Dim> outward_by_definition(const Box<double, Dim>& box) {
+  Box<float, Dim> result;
+  for (int axis = 0; axis < Dim; ++axis) {
+    const bool valid = box.min[axis] <= box.max[axis];
+    result.min[axis] = valid ? below_by_definition(box.min[axis]) : above_by_definition(box.min[axis]);
+    result.max[axis] = valid ? above_by_definition(box.max[axis]) : below_by_definition(box.max[axis]);
+  }
+  return result;
+}
+
+template <int Dim>
+void check_boxes() {
+  const std::vector<double> values = of_every_exponent();
+  std::mt19937_64 random(Dim);
+  std::vector<Box<double, Dim>> boxes;
+  std::vector<Box<float, Dim>> expected;
+  for (int i = 0; i < 30'000; ++i) {
+    Box<double, Dim> box;
+    for (int axis = 0; axis < Dim; ++axis) {
+      // One box in three is made of common numbers alone; others have odd ones among them.
+      const auto number = [&] {
+        if (i % 3 != 0 && random() % 4 == 0) return values[random() % values.size()];
+        return random() % 8 == 0 ? 0.0 : (static_cast<double>(random() >> 11) * 0x1p-53 - 0.5) * 1000;
+      };
+      box.min[axis] = number();
+      box.max[axis] = i % 5 == 0 ? box.min[axis] : number();
+      if (i % 7 != 0 && box.max[axis] < box.min[axis]) std::swap(box.min[axis], box.max[axis]);
+    }
+    boxes.push_back(box);
+    expected.push_back(outward_by_definition(box));
+  }
+  for (const ClientMode::Kind kind : ClientMode::kinds()) {
+    std::size_t wrong = 0;
+    {
+      const ClientMode client(kind);
+      for (std::size_t i = 0; i < boxes.size(); ++i) {
+        const Box<float, Dim> rounded = round_outward<float>(boxes[i]);
+        wrong += std::memcmp(&rounded, &expected[i], sizeof(rounded)) == 0 ? 0 : 1;
+      }
+    }
+    EXPECT_EQ(wrong, 0U) << Dim << " axes, " << kind.flush << ' ' << kind.rounding;
+  }
+}
+
+TEST(Rounding, BoxesAreThoseOfTheDefinitionBitForBitInEveryMode) {
+  check_boxes<1>();
+  check_boxes<2>();
+  check_boxes<3>();
+  check_boxes<4>();
+  check_boxes<5>();
 }
 
 TEST(Rounding, BoxesThatAreNotValidDoNotBecomeValid) {
@@ -157,27 +240,37 @@ TEST(Rounding, SumsReachAsFarAsTheyShould) {
   EXPECT_EQ(sum_below(-Float::infinity(), 1), -Float::infinity());
 }
 
-TEST(Rounding, SumsReachAsFarWhereDenormalsAreFlushed) {
+TEST(Rounding, SumsReachAsFarInEveryMode) {
   const std::vector<double> values = interesting();
   struct Case {
     float value, above, below;
     double by;
   };
-  std::vector<Case> cases;
-  {
-    const FlushToZero flush;
-    for (std::size_t i = 0; i + 1 < values.size(); ++i) {
-      const double by = std::bit_cast<double>(std::bit_cast<std::uint64_t>(values[i + 1]) & ~(std::uint64_t{1} << 63));
-      if (std::isinf(by) || by > 1e30) continue;
-      const float value = round_below(values[i]);
-      if (std::isinf(value)) continue;
-      cases.push_back({value, sum_above(value, by), sum_below(value, by), by});
+  for (const ClientMode::Kind kind : ClientMode::kinds()) {
+    std::vector<Case> cases;
+    {
+      const ClientMode client(kind);
+      for (std::size_t i = 0; i + 1 < values.size(); ++i) {
+        const double by =
+            std::bit_cast<double>(std::bit_cast<std::uint64_t>(values[i + 1]) & ~(std::uint64_t{1} << 63));
+        if (std::isinf(by) || by > 1e30) continue;
+        const float value = round_below(values[i]);
+        if (std::isinf(value)) continue;
+        cases.push_back({value, sum_above(value, by), sum_below(value, by), by});
+      }
+      // The least step of integers is one, however little is to be added.
+      EXPECT_EQ(sum_above(std::int32_t{5}, 1e-310), 6);
+      EXPECT_EQ(sum_below(std::int32_t{5}, 1e-310), 4);
+      EXPECT_EQ(sum_above(std::int32_t{5}, 2.5), 8);
+      EXPECT_EQ(sum_below(std::int32_t{5}, 2.5), 2);
     }
-  }
-  ASSERT_GT(cases.size(), 1000U);
-  for (const Case& c : cases) {
-    EXPECT_GE(static_cast<long double>(c.above), static_cast<long double>(c.value) + c.by) << c.value << " + " << c.by;
-    EXPECT_LE(static_cast<long double>(c.below), static_cast<long double>(c.value) - c.by) << c.value << " - " << c.by;
+    ASSERT_GT(cases.size(), 1000U);
+    for (const Case& c : cases) {
+      EXPECT_GE(static_cast<long double>(c.above), static_cast<long double>(c.value) + c.by)
+          << c.value << " + " << c.by;
+      EXPECT_LE(static_cast<long double>(c.below), static_cast<long double>(c.value) - c.by)
+          << c.value << " - " << c.by;
+    }
   }
 }
 

@@ -28,8 +28,8 @@ template <class Key>
 template <class Scalar, int Dim>
 [[nodiscard]] std::string describe_fault(const Box<Scalar, Dim>& box) {
   for (int axis = 0; axis < Dim; ++axis) {
-    if (box.min[axis] <= box.max[axis]) continue;
-    const bool nan = box.min[axis] != box.min[axis] || box.max[axis] != box.max[axis];
+    if (in_order(box.min[axis], box.max[axis])) continue;
+    const bool nan = !in_order(box.min[axis], box.min[axis]) || !in_order(box.max[axis], box.max[axis]);
     std::ostringstream out;
     out << "its box has " << (nan ? "a NaN" : "min > max") << " on axis " << axis << " (min " << box.min[axis]
         << ", max " << box.max[axis] << ")";

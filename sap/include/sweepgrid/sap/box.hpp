@@ -6,16 +6,37 @@
 #include <limits>
 #include <type_traits>
 
+#include <sweepgrid/sap/ordered_bits.hpp>
+
 namespace sweepgrid {
 
-/// Anything with `min()` and `max()` that can be indexed by axis, such as Eigen::AlignedBox<Scalar, Dim>.
+/// Whether every value of From is one of To. A type that is no number of the language's own decides by its conversions.
+template <class From, class To>
+inline constexpr bool kHoldsEvery = [] {
+  using F = std::numeric_limits<From>;
+  using T = std::numeric_limits<To>;
+  if constexpr (!std::is_arithmetic_v<From> || std::same_as<From, To>) {
+    return true;
+  } else if constexpr (std::floating_point<From>) {
+    return std::floating_point<To> && F::digits <= T::digits && F::max_exponent <= T::max_exponent;
+  } else {
+    return F::digits <= T::digits && (std::floating_point<To> || T::is_signed || !F::is_signed);
+  }
+}();
+
+/// Anything with `min()` and `max()` that can be indexed by axis, such as Eigen::AlignedBox<Scalar, Dim>. A box of a
+/// scalar whose values do not all fit is none: how they are to be rounded is for the client to say, with
+/// round_outward() or a Quantizer.
 template <class T, class Scalar>
 concept BoxLike = requires(const T& box) {
   { box.min()[0] } -> std::convertible_to<Scalar>;
   { box.max()[0] } -> std::convertible_to<Scalar>;
+  requires kHoldsEvery<std::remove_cvref_t<decltype(box.min()[0])>, Scalar>;
+  requires kHoldsEvery<std::remove_cvref_t<decltype(box.max()[0])>, Scalar>;
 };
 
 /// A closed axis-aligned bounding box in world units: boxes that only touch overlap. Infinite extents are allowed.
+/// Boxes are compared by bits, so that neither a compiler's flags nor the thread's floating-point mode matter.
 template <class Scalar, int Dim>
 struct Box {
   static_assert(Dim >= 1);
@@ -38,21 +59,36 @@ struct Box {
 
   /// No coordinate is NaN, and min <= max on every axis.
   [[nodiscard]] bool valid() const {
+#if !__FINITE_MATH_ONLY__
+    // All that boxes of positive extent need, and much faster than bits: a NaN is in no order, and what is in strict
+    // order where denormals are read as zero is so where they are not.
+    bool strict = true;
+    for (int axis = 0; axis < Dim; ++axis) strict = strict && min[axis] < max[axis];
+    if (strict) return true;
+#endif
     for (int axis = 0; axis < Dim; ++axis) {
-      // Written so that a NaN on either side fails.
-      if (!(min[axis] <= max[axis])) return false;
+      if (!in_order(min[axis], max[axis])) return false;
     }
     return true;
   }
 
+  /// Precondition: both are valid.
   [[nodiscard]] bool overlaps(const Box& other) const {
     for (int axis = 0; axis < Dim; ++axis) {
-      if (min[axis] > other.max[axis] || other.min[axis] > max[axis]) return false;
+      if (ordered_bits(min[axis]) > ordered_bits(other.max[axis])) return false;
+      if (ordered_bits(other.min[axis]) > ordered_bits(max[axis])) return false;
     }
     return true;
   }
 
-  friend bool operator==(const Box&, const Box&) = default;
+  /// -0.0 and 0.0 are equal; a NaN is equal to one of the same bits.
+  friend bool operator==(const Box& a, const Box& b) {
+    for (int axis = 0; axis < Dim; ++axis) {
+      if (ordered_bits(a.min[axis]) != ordered_bits(b.min[axis])) return false;
+      if (ordered_bits(a.max[axis]) != ordered_bits(b.max[axis])) return false;
+    }
+    return true;
+  }
 };
 
 }  // namespace sweepgrid

@@ -33,12 +33,12 @@ class Quantizer {
   /// `origin` is mapped near 0. `resolution`: the step of one, in world units; made the power of two at or below it.
   /// Throws std::invalid_argument unless both are finite, and `resolution` is positive and normal.
   Quantizer(const Point& origin, double resolution) {
-    if (!(std::isnormal(resolution) && resolution > 0)) {
+    if (rounding::tiny(resolution) || rounding::negative(resolution) || !rounding::finite(resolution)) {
       throw std::invalid_argument("sweepgrid: Quantizer: the resolution must be positive and normal");
     }
     resolution_ = std::ldexp(1.0, std::min(std::ilogb(resolution), 1022));
     for (int axis = 0; axis < Dim; ++axis) {
-      if (!std::isfinite(origin[axis])) {
+      if (!rounding::finite(origin[axis])) {
         throw std::invalid_argument("sweepgrid: Quantizer: the origin must be finite");
       }
       origin_[axis] = std::clamp(std::floor(origin[axis] / resolution_), -kMost, kMost);
@@ -51,7 +51,8 @@ class Quantizer {
     Point origin;
     for (int axis = 0; axis < Dim; ++axis) {
       const double half = world.max[axis] / 2 - world.min[axis] / 2;
-      if (!(half >= 0) || !std::isfinite(half)) {
+      if (!in_order(world.min[axis], world.max[axis]) || !rounding::finite(world.min[axis]) ||
+          !rounding::finite(world.max[axis])) {
         throw std::invalid_argument("sweepgrid: Quantizer: the world must be a valid and finite box");
       }
       const double farthest = std::max(std::fabs(world.min[axis]), std::fabs(world.max[axis]));
@@ -71,7 +72,7 @@ class Quantizer {
   [[nodiscard]] Box<Int, Dim> operator()(const World& box) const {
     Box<Int, Dim> result;
     for (int axis = 0; axis < Dim; ++axis) {
-      if (box.min[axis] <= box.max[axis]) {
+      if (in_order(box.min[axis], box.max[axis])) {
         result.min[axis] = saturated(below(box.min[axis]) - origin_[axis]);
         result.max[axis] = saturated(-below(-box.max[axis]) - origin_[axis]);
       } else {
