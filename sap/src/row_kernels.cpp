@@ -1,4 +1,11 @@
 // Compiled several times over, once for each instruction set: foreach_target.h includes this file again and again.
+
+// Vectors whose size is not known to the compiler can be no members of a class, as Boxes has them; on such machines the
+// kernels are those of NEON. Which processor has which is chosen at run time everywhere else.
+#if defined(__aarch64__) && !defined(HWY_DISABLED_TARGETS)
+#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128)
+#endif
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "row_kernels.cpp"  // NOLINT(bugprone-suspicious-include): that is how Highway works
 #include <hwy/foreach_target.h>

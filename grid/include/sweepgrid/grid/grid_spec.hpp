@@ -8,6 +8,7 @@
 #include <type_traits>
 
 #include <sweepgrid/grid/cell_range.hpp>
+#include <sweepgrid/grid/strict_math.hpp>
 #include <sweepgrid/sap/box.hpp>
 
 namespace sweepgrid {

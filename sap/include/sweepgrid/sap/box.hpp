@@ -6,7 +6,7 @@
 #include <limits>
 #include <type_traits>
 
-#include <sweepgrid/sap/ordered_bits.hpp>
+#include <sweepgrid/sap/float_bits.hpp>
 
 namespace sweepgrid {
 
@@ -34,6 +34,19 @@ concept BoxLike = requires(const T& box) {
   requires kHoldsEvery<std::remove_cvref_t<decltype(box.min()[0])>, Scalar>;
   requires kHoldsEvery<std::remove_cvref_t<decltype(box.max()[0])>, Scalar>;
 };
+
+/// a <= b, and neither is NaN. By bits.
+template <class Scalar>
+[[nodiscard]] constexpr bool in_order(Scalar a, Scalar b) {
+  const auto low = rounding::steps_from_zero(a);
+  const auto high = rounding::steps_from_zero(b);
+  if constexpr (std::floating_point<Scalar>) {
+    constexpr auto kInfinity = rounding::steps_from_zero(std::numeric_limits<Scalar>::infinity());
+    return -kInfinity <= low && low <= high && high <= kInfinity;
+  } else {
+    return low <= high;
+  }
+}
 
 /// A closed axis-aligned bounding box in world units: boxes that only touch overlap. Infinite extents are allowed.
 /// Boxes are compared by bits, so that neither a compiler's flags nor the thread's floating-point mode matter.
@@ -74,18 +87,20 @@ struct Box {
 
   /// Precondition: both are valid.
   [[nodiscard]] bool overlaps(const Box& other) const {
+    using rounding::steps_from_zero;
     for (int axis = 0; axis < Dim; ++axis) {
-      if (ordered_bits(min[axis]) > ordered_bits(other.max[axis])) return false;
-      if (ordered_bits(other.min[axis]) > ordered_bits(max[axis])) return false;
+      if (steps_from_zero(min[axis]) > steps_from_zero(other.max[axis])) return false;
+      if (steps_from_zero(other.min[axis]) > steps_from_zero(max[axis])) return false;
     }
     return true;
   }
 
   /// -0.0 and 0.0 are equal; a NaN is equal to one of the same bits.
   friend bool operator==(const Box& a, const Box& b) {
+    using rounding::steps_from_zero;
     for (int axis = 0; axis < Dim; ++axis) {
-      if (ordered_bits(a.min[axis]) != ordered_bits(b.min[axis])) return false;
-      if (ordered_bits(a.max[axis]) != ordered_bits(b.max[axis])) return false;
+      if (steps_from_zero(a.min[axis]) != steps_from_zero(b.min[axis])) return false;
+      if (steps_from_zero(a.max[axis]) != steps_from_zero(b.max[axis])) return false;
     }
     return true;
   }

@@ -6,6 +6,8 @@
 #include <limits>
 #include <type_traits>
 
+#include <sweepgrid/sap/platform.hpp>
+
 // What kind of number one is, by its bits: also where the compiler takes it that all are finite, or where the thread
 // reads denormals as zero.
 namespace sweepgrid::rounding {
@@ -42,6 +44,19 @@ template <std::floating_point Real>
 template <std::floating_point Real>
 [[nodiscard]] constexpr bool infinite(Real value) {
   return magnitude(value) == magnitude(std::numeric_limits<Real>::infinity());
+}
+
+/// How many numbers of the type away from zero, downwards if negative: in the order of the values, and 0 for both
+/// zeros. A NaN is beyond the infinity of its sign. Of an integer, itself.
+template <class Scalar>
+[[nodiscard]] constexpr auto steps_from_zero(Scalar value) {
+  if constexpr (std::floating_point<Scalar>) {
+    static_assert(std::numeric_limits<Scalar>::is_iec559 && sizeof(Scalar) == sizeof(BitsOf<Scalar>));
+    const auto steps = static_cast<std::make_signed_t<BitsOf<Scalar>>>(magnitude(value));
+    return negative(value) ? -steps : steps;
+  } else {
+    return value;
+  }
 }
 
 }  // namespace sweepgrid::rounding

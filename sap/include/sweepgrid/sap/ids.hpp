@@ -3,6 +3,8 @@
 #include <compare>
 #include <cstdint>
 
+#include <sweepgrid/sap/platform.hpp>
+
 namespace sweepgrid {
 
 /// Dense number of an object inside the engine. Never seen by clients, who hold keys and handles.
