@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <memory>
 #include <random>
 #include <sstream>
 #include <string>
@@ -12,11 +13,6 @@
 #include <vector>
 
 #include <gtest/gtest.h>
-#include <boost/iostreams/device/back_inserter.hpp>
-#include <boost/iostreams/filter/gzip.hpp>
-#include <boost/iostreams/filter/lzma.hpp>
-#include <boost/iostreams/filter/zstd.hpp>
-#include <boost/iostreams/filtering_stream.hpp>
 
 #include "scenes/open_scene.hpp"
 #include "scenes/scene_error.hpp"
@@ -25,19 +21,6 @@ namespace sweepgrid::scene_files {
 
 /// The objects of one moment.
 using Objects = std::map<SceneKey, SceneBox>;
-
-inline std::string compress(const std::string& content, const std::string& compression) {
-  namespace io = boost::iostreams;
-  std::string result;
-  io::filtering_ostream stream;
-  if (compression == "gzip") stream.push(io::gzip_compressor());
-  if (compression == "xz") stream.push(io::lzma_compressor());
-  if (compression == "zstd") stream.push(io::zstd_compressor());
-  stream.push(io::back_inserter(result));
-  stream << content;
-  stream.reset();
-  return result;
-}
 
 /// A directory of this test's own, gone with it.
 class Directory {
@@ -157,17 +140,31 @@ inline std::vector<Objects> play(const std::string& spec, const SceneOptions& op
   return play(*open_scene(spec, options));
 }
 
-/// The message with which a scene fails when it is opened or read to its end; empty when it does not.
-inline std::string failure(const std::string& spec, const SceneOptions& options = {}) {
+/// Opens what a file with these bytes would hold.
+inline std::unique_ptr<SceneSource> open_bytes(const std::string& bytes, const SceneOptions& options = {}) {
+  return open_recording(std::make_unique<std::stringbuf>(bytes, std::ios::in), "bytes", options);
+}
+
+inline void read_to_end(SceneSource& source) {
+  for (SceneStep step; source.next(step);) {
+  }
+}
+
+/// The message with which a scene fails when it is opened, by `open`, or read to its end; empty when it does not.
+template <class Open>
+std::string failure_of(Open open) {
   try {
-    const auto source = open_scene(spec, options);
-    SceneStep step;
-    while (source->next(step)) {
-    }
+    read_to_end(*open());
   } catch (const SceneError& error) {
     return error.what();
   }
   return "";
+}
+inline std::string failure(const std::string& spec, const SceneOptions& options = {}) {
+  return failure_of([&] { return open_scene(spec, options); });
+}
+inline std::string bytes_failure(const std::string& bytes, const SceneOptions& options = {}) {
+  return failure_of([&] { return open_bytes(bytes, options); });
 }
 
 }  // namespace sweepgrid::scene_files

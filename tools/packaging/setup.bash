@@ -32,7 +32,7 @@ report_packages=()
 command -v npm >/dev/null || report_packages=(npm)
 readonly build_packages=(
   g++ cmake ninja-build libtbb-dev libhwy-dev libcli11-dev nlohmann-json3-dev libfmt-dev
-  libboost-iostreams-dev zlib1g-dev liblzma-dev libzstd-dev "${report_packages[@]}")
+  libboost-dev zlib1g-dev liblzma-dev libzstd-dev "${report_packages[@]}")
 readonly test_packages=(libgtest-dev libeigen3-dev librapidcheck-dev libbenchmark-dev)
 
 # install_packages <package>...: asks apt for those that are missing, and for nothing when none is.

@@ -4,11 +4,9 @@
 #include <array>
 #include <bit>
 #include <cstring>
-#include <filesystem>
+#include <limits>
 
 #include <fmt/format.h>
-
-#include "scenes/scene_error.hpp"
 
 namespace sweepgrid {
 namespace {
@@ -18,6 +16,8 @@ constexpr std::size_t kCountsAt = 2 * kNameSize;
 constexpr std::size_t kWorldAt = 272;
 constexpr std::size_t kBoxSize = 32;
 constexpr std::size_t kBoxesAtOnce = 4096;
+// Frames without boxes have no bytes that would bear their number out, so that a damaged header can tell any.
+constexpr std::uint64_t kMostEmptyFrames = 1 << 16;
 
 std::uint32_t read_u32(const char* from) {
   std::uint32_t value = 0;
@@ -45,18 +45,25 @@ std::string read_name(const char* from) {
   return name;
 }
 
+// Printable, ended by a NUL and filled up with more of them.
+bool is_name(std::string_view field) {
+  const auto end = std::find(field.begin(), field.end(), '\0');
+  return end != field.end() && std::all_of(field.begin(), end, [](char c) { return c >= ' ' && c <= '~'; }) &&
+         std::all_of(end, field.end(), [](char c) { return c == '\0'; });
+}
+
 }  // namespace
 
 bool AabbsSource::recognises(std::string_view start) {
-  return start.size() >= kHeaderSize && read_i32(start.data() + kCountsAt) >= 0 &&
+  return start.size() >= kHeaderSize && is_name(start.substr(0, kNameSize)) &&
+         is_name(start.substr(kNameSize, kNameSize)) && read_i32(start.data() + kCountsAt) >= 0 &&
          read_i32(start.data() + kCountsAt + 4) >= 0 && read_box(start.data() + kWorldAt).valid();
 }
 
 AabbsSource::AabbsSource(std::unique_ptr<ByteStream> content) : content_(std::move(content)) {
   std::array<char, kHeaderSize> header;
-  const std::size_t size = content_->read(header.data(), header.size());
-  if (size < header.size()) {
-    content_->fail_at_byte(size, fmt::format("the file ends inside the {} bytes of the .aabbs header", kHeaderSize));
+  if (content_->read(header.data(), header.size()) < header.size()) {
+    content_->fail_at_end_in_bytes(fmt::format("inside the {} bytes of the .aabbs header", kHeaderSize));
   }
   const std::int32_t objects = read_i32(header.data() + kCountsAt);
   const std::int32_t steps = read_i32(header.data() + kCountsAt + 4);
@@ -72,15 +79,25 @@ AabbsSource::AabbsSource(std::unique_ptr<ByteStream> content) : content_(std::mo
   info_.bounds = world;
   info_.steps = frame_count_ - 1;
   info_.details = {{"scene", read_name(header.data())}, {"objects type", read_name(header.data() + kNameSize)}};
-  check_file_size();
+  check_size();
 }
 
-void AabbsSource::check_file_size() const {
-  std::error_code error;
-  if (content_->compression() != "none" || !std::filesystem::is_regular_file(content_->path(), error)) return;
-  const std::uint64_t told = kHeaderSize + kBoxSize * object_count_ * frame_count_;
-  const std::uint64_t found = std::filesystem::file_size(content_->path(), error);
-  if (error || found == told) return;
+void AabbsSource::check_size() const {
+  if (object_count_ == 0 && frame_count_ > kMostEmptyFrames) {
+    content_->fail_at_byte(kCountsAt + 4,
+                           fmt::format("the .aabbs header tells {} frames without objects", frame_count_));
+  }
+  const std::uint64_t boxes = object_count_ * frame_count_;  // each below 2^32
+  if (boxes > (std::numeric_limits<std::uint64_t>::max() - kHeaderSize) / kBoxSize) {
+    content_->fail_at_byte(
+        kCountsAt, fmt::format("the .aabbs header tells {} frames of {} objects, too many for a file", frame_count_,
+                               object_count_));
+  }
+  if (!content_->size()) return;
+  const std::uint64_t told = kHeaderSize + kBoxSize * boxes;
+  const std::uint64_t found = *content_->size();
+  // A file that is cut in a later frame is read up to there.
+  if (found == told || (found < told && found >= kHeaderSize + kBoxSize * object_count_)) return;
   content_->fail_at_byte(
       std::min(found, told),
       fmt::format("the header tells {} frames of {} objects, which are {} bytes, but the file has {}", frame_count_,
@@ -94,6 +111,7 @@ bool AabbsSource::read_frame(Frame& frame) {
       content_->fail_at_byte(content_->offset(),
                              fmt::format("more data behind the {} frames that the header tells", frame_count_));
     }
+    if (!content_->damage().empty()) content_->fail_at_end_in_bytes(fmt::format("behind frame {}", frame_count_));
     return false;
   }
   // In parts, so that a wrong count in the header runs into the end of the file and not out of memory.
@@ -101,9 +119,10 @@ bool AabbsSource::read_frame(Frame& frame) {
   for (std::uint64_t first = 0; first < object_count_; first += kBoxesAtOnce) {
     const std::size_t count = std::min<std::uint64_t>(kBoxesAtOnce, object_count_ - first);
     const std::uint64_t at = content_->offset();
-    if (content_->read(part.data(), kBoxSize * count) < kBoxSize * count) {
-      content_->fail_at_byte(content_->offset(),
-                             fmt::format("the file ends inside frame {} of {}", frames_read_ + 1, frame_count_));
+    const std::size_t size = content_->read(part.data(), kBoxSize * count);
+    if (size < kBoxSize * count) {
+      content_->fail_at_end_in_bytes(
+          fmt::format("inside frame {} of {}, at object {}", frames_read_ + 1, frame_count_, first + size / kBoxSize));
     }
     for (std::size_t i = 0; i < count; ++i) {
       const SceneBox box = read_box(part.data() + kBoxSize * i);

@@ -18,8 +18,8 @@ class AabbsSource : public FrameSource {
 
   explicit AabbsSource(std::unique_ptr<ByteStream> content);
 
-  /// Whether a file that starts so can be one. The format has no magic bytes: the counts must make sense, and the world
-  /// must be a valid box.
+  /// Whether a file that starts so can be one. The format has no magic bytes: the names must be text filled up with
+  /// NULs, the counts not negative, and the world a valid box.
   [[nodiscard]] static bool recognises(std::string_view start);
 
   [[nodiscard]] const SceneInfo& info() const override { return info_; }
@@ -28,7 +28,8 @@ class AabbsSource : public FrameSource {
   bool read_frame(Frame& frame) override;
 
  private:
-  void check_file_size() const;
+  // Whether the counts make sense together, and beside the size of the file where that is known.
+  void check_size() const;
 
   std::unique_ptr<ByteStream> content_;
   SceneInfo info_;

@@ -5,41 +5,18 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <stdexcept>
 #include <utility>
 
 #include <fmt/format.h>
-#include <boost/iostreams/filter/gzip.hpp>
-#include <boost/iostreams/filter/lzma.hpp>
-#include <boost/iostreams/filter/zstd.hpp>
 
 #include "scenes/scene_error.hpp"
-#include "scenes/zstd_framing.hpp"
 
 namespace sweepgrid {
 namespace {
 
 constexpr std::size_t kBufferSize = std::size_t{1} << 16;
 constexpr std::size_t kLongestLine = std::size_t{1} << 20;
-
-struct Magic {
-  std::string_view bytes;
-  std::string_view compression;
-};
-using namespace std::string_view_literals;
-constexpr Magic kMagics[] = {{"\x1f\x8b"sv, "gzip"}, {"\xFD\x37zXZ\0"sv, "xz"}, {"\x28\xb5\x2f\xfd"sv, "zstd"}};
-
-// Reads the first bytes and puts them back, which works for pipes as well.
-std::string first_bytes(std::streambuf& file, std::size_t count) {
-  std::string bytes;
-  while (bytes.size() < count) {
-    const int byte = file.sbumpc();
-    if (byte == std::streambuf::traits_type::eof()) break;
-    bytes.push_back(static_cast<char>(byte));
-  }
-  // A failed read at the end of the file leaves the buffer in place; the bytes are still in it.
-  for (std::size_t i = 0; i < bytes.size(); ++i) file.sungetc();
-  return bytes;
-}
 
 std::unique_ptr<std::streambuf> open_file(const std::string& path) {
   std::error_code ignored;
@@ -51,24 +28,66 @@ std::unique_ptr<std::streambuf> open_file(const std::string& path) {
   return file;
 }
 
+// From where `bytes` stands to its end; nothing for pipes and devices.
+std::optional<std::uint64_t> size_of(std::streambuf& bytes) {
+  const std::streamoff here = bytes.pubseekoff(0, std::ios::cur, std::ios::in);
+  if (here < 0) return std::nullopt;
+  const std::streamoff end = bytes.pubseekoff(0, std::ios::end, std::ios::in);
+  if (bytes.pubseekpos(here, std::ios::in) != std::streampos(here)) return std::nullopt;
+  if (end <= here) return std::nullopt;  // a device says 0
+  return static_cast<std::uint64_t>(end - here);
+}
+
 }  // namespace
 
 ByteStream::ByteStream(const std::string& path) : ByteStream(open_file(path), path) {}
 
 ByteStream::ByteStream(std::unique_ptr<std::streambuf> bytes, std::string path)
-    : path_(std::move(path)), compression_("none"), bytes_(std::move(bytes)), buffer_(kBufferSize) {
-  namespace io = boost::iostreams;
-  const std::string start = first_bytes(*bytes_, 6);
-  for (const Magic& magic : kMagics) {
-    if (start.starts_with(magic.bytes)) compression_ = magic.compression;
+    : path_(std::move(path)), bytes_(std::move(bytes)), buffer_(kBufferSize) {
+  const std::optional<std::uint64_t> size = size_of(*bytes_);
+  // Unpacked until it is known what they are.
+  compression_ = compression_of(peek(kLongestMagic));
+  decompressor_ = make_decompressor(compression_);
+  if (decompressor_ == nullptr) {
+    size_ = size;
+    return;
   }
-  if (compression_ == "gzip") content_.push(io::gzip_decompressor());
-  if (compression_ == "xz") content_.push(io::lzma_decompressor());
-  if (compression_ == "zstd") {
-    content_.push(io::zstd_decompressor());
-    content_.push(ZstdCutDetector());
+  packed_.swap(buffer_);
+  std::swap(packed_begin_, begin_);
+  std::swap(packed_end_, end_);
+  bytes_ended_ = std::exchange(at_end_, false);
+  buffer_.resize(kBufferSize);
+}
+
+std::size_t ByteStream::bytes(std::span<char> to) {
+  try {
+    // Takes what is there and does not wait for more: a pipe may be slow.
+    if (bytes_->sgetc() == std::streambuf::traits_type::eof()) return 0;
+    const auto ready = std::max<std::streamsize>(bytes_->in_avail(), 1);
+    const auto count = std::min(ready, static_cast<std::streamsize>(to.size()));
+    return static_cast<std::size_t>(std::max<std::streamsize>(bytes_->sgetn(to.data(), count), 0));
+  } catch (const std::ios_base::failure& error) {
+    damage_ = error.what();
+    return 0;
   }
-  content_.push(*bytes_);
+}
+
+std::size_t ByteStream::content(std::span<char> to) {
+  if (decompressor_ == nullptr) return bytes(to);
+  while (true) {
+    if (packed_begin_ == packed_end_ && !bytes_ended_) {
+      packed_begin_ = 0;
+      packed_end_ = bytes(packed_);
+      bytes_ended_ = packed_end_ == 0;
+    }
+    const std::string_view in(packed_.data() + packed_begin_, packed_end_ - packed_begin_);
+    const Decompressor::Progress progress = decompressor_->run(in, to, bytes_ended_);
+    packed_begin_ += progress.taken;
+    if (progress.given > 0) return progress.given;
+    if (!bytes_ended_ || progress.taken > 0) continue;
+    if (damage_.empty() && !decompressor_->complete()) damage_ = fmt::format("the {} data are cut off", compression_);
+    return 0;
+  }
 }
 
 bool ByteStream::fill() {
@@ -79,20 +98,15 @@ bool ByteStream::fill() {
     begin_ = 0;
   }
   if (end_ == buffer_.size()) buffer_.resize(2 * buffer_.size());
-  std::streamsize count = 0;
+  std::size_t count = 0;
   try {
-    count = content_.sgetn(buffer_.data() + end_, static_cast<std::streamsize>(buffer_.size() - end_));
-  } catch (const std::exception& error) {
-    if (compression_ == "none") throw SceneError(fmt::format("{}: {}", path_, error.what()));
-    throw SceneError(fmt::format("{}: byte {} of the content: the {} data are damaged or cut off ({})", path_,
-                                 offset_ + (end_ - begin_), compression_, error.what()));
+    count = content(std::span(buffer_).subspan(end_));
+  } catch (const std::runtime_error& error) {
+    damage_ = fmt::format("the {} data are damaged ({})", compression_, error.what());
   }
-  if (count <= 0) {
-    at_end_ = true;
-    return false;
-  }
-  end_ += static_cast<std::size_t>(count);
-  return true;
+  at_end_ = count == 0;
+  end_ += count;
+  return !at_end_;
 }
 
 std::string_view ByteStream::peek(std::size_t count) {
@@ -137,7 +151,7 @@ bool ByteStream::read_line(std::string_view& line) {
     if (fill()) continue;
     if (unread == 0) return false;
     ++line_;
-    fail_at_line("the file ends inside this line");
+    fail_at_end_in_lines("inside this line");
   }
 }
 
@@ -147,6 +161,14 @@ void ByteStream::fail_at_byte(std::uint64_t byte, std::string_view reason) const
 
 void ByteStream::fail_at_line(std::string_view reason) const {
   throw SceneError(fmt::format("{}: line {}: {}", path_, line_, reason));
+}
+
+void ByteStream::fail_at_end_in_bytes(std::string_view where) const { fail_at_byte(offset_, end_reason(where)); }
+
+void ByteStream::fail_at_end_in_lines(std::string_view where) const { fail_at_line(end_reason(where)); }
+
+std::string ByteStream::end_reason(std::string_view where) const {
+  return fmt::format("the file ends {}{}{}", where, damage_.empty() ? "" : ": ", damage_);
 }
 
 }  // namespace sweepgrid

@@ -2,11 +2,14 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include "scenes/byte_stream.hpp"
 #include "scenes/frame_source.hpp"
+#include "scenes/lammps_cell.hpp"
 #include "scenes/lammps_columns.hpp"
+#include "scenes/open_scene.hpp"
 
 namespace sweepgrid {
 
@@ -14,10 +17,10 @@ namespace sweepgrid {
 /// insert, one that is gone an erase. Atoms may come in any order, columns too, and both may change between frames.
 class LammpsSource : public FrameSource {
  public:
-  /// `diameter`: of all atoms of a dump without a column for it.
-  LammpsSource(std::unique_ptr<ByteStream> content, std::optional<double> diameter);
+  LammpsSource(std::unique_ptr<ByteStream> content, const SceneOptions& options);
 
-  [[nodiscard]] static bool recognises(std::string_view start) { return start.starts_with("ITEM:"); }
+  /// Whether a file that starts so is a dump.
+  [[nodiscard]] static bool recognises(std::string_view start);
 
   [[nodiscard]] const SceneInfo& info() const override { return info_; }
 
@@ -29,18 +32,18 @@ class LammpsSource : public FrameSource {
   struct Header {
     std::string timestep;
     std::uint64_t atom_count = 0;
-    LammpsBounds bounds;
+    LammpsCell cell;
   };
 
   // False at the end of the file.
   bool read_header(Header& header);
   bool read_frame_from_file(Frame& frame, Header& header);
-  void read_bounds(std::string_view kind, LammpsBounds& bounds);
-  void read_columns(std::string_view names);
+  LammpsCell read_cell(std::string_view words_behind_item);
+  void read_columns(std::string_view names, const LammpsCell& cell);
   std::string_view need_line(std::string_view what);
 
   std::unique_ptr<ByteStream> content_;
-  std::optional<double> diameter_;
+  SceneOptions options_;
   SceneInfo info_;
   std::optional<LammpsColumns> columns_;
   std::optional<Frame> first_;  // read ahead, so that a file that is no dump is noticed when it is opened

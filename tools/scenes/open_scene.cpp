@@ -18,13 +18,20 @@ namespace {
 std::unique_ptr<SceneSource> source_of(std::unique_ptr<ByteStream> content, const SceneOptions& options) {
   const std::string& name = content->path();
   const std::string_view start = content->peek(AabbsSource::kHeaderSize);
+  if (LammpsSource::recognises(start)) return std::make_unique<LammpsSource>(std::move(content), options);
+  // Too little to tell what it is.
+  if (start.size() < AabbsSource::kHeaderSize && !content->damage().empty()) {
+    throw SceneError(fmt::format("{}: the file ends after {} bytes: {}", name, start.size(), content->damage()));
+  }
   if (start.empty()) throw SceneError(fmt::format("{}: the file is empty", name));
-  if (LammpsSource::recognises(start)) return std::make_unique<LammpsSource>(std::move(content), options.diameter);
-  // The name counts only where the content does not decide: to say what is wrong with a damaged .aabbs header.
-  if (AabbsSource::recognises(start) || name.find(".aabbs") != std::string::npos) {
+  // The name counts only where the content does not decide: to say what is wrong with a damaged .aabbs header. Text is
+  // none, whatever its name.
+  const bool text = start.find('\0') == std::string_view::npos;
+  if (AabbsSource::recognises(start) || (!text && name.find(".aabbs") != std::string::npos)) {
     return std::make_unique<AabbsSource>(std::move(content));
   }
-  throw SceneError(fmt::format("{}: neither a LAMMPS text dump (no 'ITEM:' at its start) nor .aabbs", name));
+  throw SceneError(
+      fmt::format("{}: not a recording: neither a LAMMPS text dump (no 'ITEM:' at its start) nor .aabbs", name));
 }
 
 }  // namespace

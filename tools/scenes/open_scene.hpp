@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <optional>
 #include <streambuf>
@@ -12,6 +13,8 @@ namespace sweepgrid {
 struct SceneOptions {
   /// Of the atoms of a LAMMPS dump without a radius column. Not negative.
   std::optional<double> diameter;
+  /// A LAMMPS dump whose boxes reach beyond this, or beyond its negative, is refused: 1e39 is infinite as a float.
+  double largest = std::numeric_limits<double>::max();
 };
 
 /// Opens a recording, whose format and compression are told by its content, or a generator such as
