@@ -6,9 +6,9 @@
 #include <concepts>
 #include <cstdint>
 #include <limits>
-#include <stdexcept>
 
 #include <sweepgrid/sap/box.hpp>
+#include <sweepgrid/sap/refuse_argument.hpp>
 #include <sweepgrid/sap/rounding.hpp>
 
 namespace sweepgrid {
@@ -34,12 +34,12 @@ class Quantizer {
   /// Throws std::invalid_argument unless both are finite, and `resolution` is positive and normal.
   Quantizer(const Point& origin, double resolution) {
     if (rounding::tiny(resolution) || rounding::negative(resolution) || !rounding::finite(resolution)) {
-      throw std::invalid_argument("sweepgrid: Quantizer: the resolution must be positive and normal");
+      refuse_argument("sweepgrid: Quantizer: the resolution must be positive and normal");
     }
     resolution_ = std::ldexp(1.0, std::min(std::ilogb(resolution), 1022));
     for (int axis = 0; axis < Dim; ++axis) {
       if (!rounding::finite(origin[axis])) {
-        throw std::invalid_argument("sweepgrid: Quantizer: the origin must be finite");
+        refuse_argument("sweepgrid: Quantizer: the origin must be finite");
       }
       origin_[axis] = std::clamp(std::floor(origin[axis] / resolution_), -kMost, kMost);
     }
@@ -53,7 +53,7 @@ class Quantizer {
       const double half = world.max[axis] / 2 - world.min[axis] / 2;
       if (!in_order(world.min[axis], world.max[axis]) || !rounding::finite(world.min[axis]) ||
           !rounding::finite(world.max[axis])) {
-        throw std::invalid_argument("sweepgrid: Quantizer: the world must be a valid and finite box");
+        refuse_argument("sweepgrid: Quantizer: the world must be a valid and finite box");
       }
       const double farthest = std::max(std::fabs(world.min[axis]), std::fabs(world.max[axis]));
       half_width = std::max(half_width, half + farthest * std::numeric_limits<double>::epsilon());
