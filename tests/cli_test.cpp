@@ -262,12 +262,51 @@ TEST_F(Program, ExitsWithTwoAndTheReasonWhenItCannotDoWhatItIsAskedFor) {
   }
 }
 
-TEST_F(Program, LeavesNoEventsFileWhenTheSceneIsCut) {
-  const std::string text = scene_files::as_dump({{{1, cube(0)}}, {{1, cube(1)}}});
+TEST_F(Program, KeepsTheResultsOfWhatWasWholeWhenASceneIsCut) {
+  const std::string text = scene_files::as_dump({{{1, cube(0)}, {2, cube(0.5)}}, {{1, cube(0)}}, {{1, cube(1)}}});
+  const std::string cut = "'" + directory_.write("cut.dump", text.substr(0, text.size() - 3)) + "'";
+  const std::string whole = small_scene();
+  const std::string events = directory_.path("e.csv"), json = directory_.path("r.json");
+  const Result result =
+      run("run --verify --events '" + events + "' --json '" + json + "' " + whole + " " + cut + " " + whole);
+  EXPECT_EQ(result.status, 2);
+  EXPECT_NE(result.err.find("cut.dump: line 31: the file ends inside this line; the results are those of the 2 whole"),
+            std::string::npos)
+      << result.err;
+  EXPECT_NE(result.out.find("cut"), std::string::npos) << result.out;
+  EXPECT_EQ(read_file(events),
+            "scene,step,event,a,b\n1,0,begin,4,7\n1,1,end,4,7\n1,1,begin,4,5\n1,2,end,4,5\n1,2,begin,4,7\n"
+            "2,0,begin,1,2\n2,1,end,1,2\n"
+            "3,0,begin,4,7\n3,1,end,4,7\n3,1,begin,4,5\n3,2,end,4,5\n3,2,begin,4,7\n");
+  const nlohmann::json scenes = nlohmann::json::parse(read_file(json)).at("scenes");
+  ASSERT_EQ(scenes.size(), 3U);
+  for (const std::size_t whole_one : {0, 2}) EXPECT_TRUE(scenes[whole_one].at("error").is_null());
+  EXPECT_NE(scenes[1].at("error").get<std::string>().find("line 31"), std::string::npos);
+  EXPECT_EQ(scenes[1].at("steps"), 1);
+  EXPECT_EQ(scenes[1].at("ends"), 1);
+  EXPECT_EQ(scenes[1].at("verification").at("ok"), true);
+  EXPECT_EQ(run("info " + cut + " " + whole).status, 2);
+  EXPECT_NE(run("info " + cut).out.find("1 after the start"), std::string::npos);
+  EXPECT_NE(run("info " + cut + " " + whole).out.find("small.dump"), std::string::npos);
+}
+
+TEST_F(Program, LeavesNoFilesWhenNoSceneHasAWholeFrame) {
+  const std::string text = scene_files::as_dump({{{1, cube(0)}}});
   const std::string scene = directory_.write("cut.dump", text.substr(0, text.size() - 3));
   EXPECT_EQ(run("run --events '" + directory_.path("e.csv") + "' '" + scene + "'").status, 2);
   for (const auto& entry : std::filesystem::directory_iterator(directory_.path(""))) {
     EXPECT_EQ(entry.path().filename().string().find("e.csv"), std::string::npos) << entry.path();
+  }
+}
+
+TEST_F(Program, RefusesWhatOnlyADoubleCanHoldUnlessTheEngineTakesDoubles) {
+  const std::string scene =
+      "'" + directory_.write("far.dump", scene_files::dump_header(5, 1, "id x y z radius") + "3 0 1e39 0 1\n") + "'";
+  for (const std::string command : {"run ", "info "}) {
+    const Result refused = run(command + scene);
+    EXPECT_EQ(refused.status, 2);
+    EXPECT_NE(refused.err.find("far.dump: line 10: timestep 5, atom 3: the box on axis y"), std::string::npos);
+    EXPECT_EQ(run(command + "--scalar double " + scene).status, 0);
   }
 }
 

@@ -1,10 +1,17 @@
 #include "cli/info_command.hpp"
 
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "cli/scene_census.hpp"
+#include "scenes/open_scene.hpp"
+#include "scenes/scene_error.hpp"
 
 namespace sweepgrid {
 namespace {
@@ -53,11 +60,22 @@ void print_census(const SceneCensus& census) {
 }  // namespace
 
 void info_command(const InfoOptions& options) {
+  const bool rounded = options.scalar == ScalarKind::kFloat;
+  SceneOptions scene_options = options.scene;
+  if (rounded) scene_options.largest = std::numeric_limits<float>::max();
+  std::vector<std::string> failures;
   for (const std::string& scene : options.scenes) {
-    const std::unique_ptr<SceneSource> source = open_scene(scene, options.scene);
-    print_info(source->info());
-    print_census(take_census(*source, options.steps, options.scalar == ScalarKind::kFloat));
+    try {
+      const std::unique_ptr<SceneSource> source = open_scene(scene, scene_options);
+      print_info(source->info());
+      const SceneCensus census = take_census(*source, options.steps, rounded);
+      if (census.started) print_census(census);
+      if (!census.error.empty()) failures.push_back(census.error);
+    } catch (const SceneError& error) {
+      failures.emplace_back(error.what());
+    }
   }
+  if (!failures.empty()) throw SceneError(fmt::format("{}", fmt::join(failures, "\nsweepgrid: ")));
 }
 
 }  // namespace sweepgrid

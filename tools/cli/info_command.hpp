@@ -18,7 +18,8 @@ struct InfoOptions {
   std::optional<std::uint64_t> steps;
 };
 
-/// `sweepgrid info`: reads each scene to its end and describes it on the standard output. Throws SceneError.
+/// `sweepgrid info`: reads each scene to its end and describes it on the standard output. Throws SceneError where one
+/// cannot be read to its end, after what was read of it, and the other scenes, are described.
 void info_command(const InfoOptions& options);
 
 }  // namespace sweepgrid

@@ -99,6 +99,7 @@ Json result_json(const SceneResult& result) {
   for (const StageTime& stage : result.stage_totals) stages[stage.stage] = 1000 * stage.seconds;
   const Stats& stats = result.stats;
   return {{"scene", scene_json(result.scene)},
+          {"error", result.error.empty() ? Json(nullptr) : Json(result.error)},
           {"steps", result.steps},
           {"objects", {{"first", result.objects_first}, {"last", result.objects_last}}},
           {"pairs", {{"first", result.pairs_first}, {"last", result.pairs_last}}},

@@ -5,6 +5,7 @@
 
 #include "cli/overlap_oracle.hpp"
 #include "scenes/rounded_step.hpp"
+#include "scenes/scene_error.hpp"
 
 namespace sweepgrid {
 namespace {
@@ -46,6 +47,7 @@ class Census {
       see(after);
     }
     if (is_start) {
+      result_.started = true;
       result_.objects_first = count_;
       result_.pairs_first = oracle_.pairs().size();
       return;
@@ -56,6 +58,8 @@ class Census {
     result_.erased.take(step.erased.size());
     if (lived_on > 0) result_.moved_part.take(static_cast<double>(moved) / static_cast<double>(lived_on));
   }
+
+  void fail(const SceneError& error) { result_.error = error.what(); }
 
   SceneCensus finish() {
     result_.objects_last = count_;
@@ -85,7 +89,12 @@ SceneCensus take_census(SceneSource& source, std::optional<std::uint64_t> steps,
   SceneStep step;
   std::vector<Box<float, 3>> scratch;
   for (std::uint64_t index = 0; index <= steps.value_or(std::numeric_limits<std::uint64_t>::max() - 1); ++index) {
-    if (!source.next(step)) break;
+    try {
+      if (!source.next(step)) break;
+    } catch (const SceneError& error) {
+      census.fail(error);
+      break;
+    }
     if (rounded) {
       round_boxes(step.inserted_boxes, scratch);
       round_boxes(step.updated_boxes, scratch);

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <string>
 
 #include "scenes/scene_source.hpp"
 
@@ -26,6 +27,8 @@ struct Range {
 
 /// What a scene turns out to be when it is read to its end.
 struct SceneCensus {
+  std::string error;        ///< why it could not be read to its end; empty: it could. All else is of what was read
+  bool started = false;     ///< the start, at least, was read
   std::uint64_t steps = 0;  ///< after the start
   std::size_t objects_first = 0;
   std::size_t objects_last = 0;
@@ -42,6 +45,7 @@ struct SceneCensus {
 };
 
 /// Reads `source` to its end, or for `steps` steps after the start. `rounded`: boxes are taken as float holds them.
+/// A SceneError ends it and is told in the result.
 [[nodiscard]] SceneCensus take_census(SceneSource& source, std::optional<std::uint64_t> steps, bool rounded);
 
 }  // namespace sweepgrid

@@ -12,6 +12,7 @@
 
 #include "cli/machine_info.hpp"
 #include "cli/progress_bar.hpp"
+#include "scenes/scene_error.hpp"
 #include "setup/guarantee.hpp"
 #include "setup/scene_engine.hpp"
 
@@ -39,9 +40,10 @@ class SceneRun {
     result_.scene = scene_;
     ProgressBar progress(result_.scene.name, result_.scene.steps);
     SceneStep ops;
-    bool right = source.next(ops) && try_step(ops);
+    result_.started = next(source, ops);
+    bool right = !result_.started || try_step(ops);
     result_.objects_first = engine_->size();
-    while (right && result_.steps < step_limit && source.next(ops)) {
+    while (right && result_.started && result_.steps < step_limit && next(source, ops)) {
       ++result_.steps;
       right = try_step(ops);
       progress.show(result_.steps);
@@ -59,6 +61,16 @@ class SceneRun {
   }
 
  private:
+  // False at the end, and where the scene cannot be read any further.
+  bool next(SceneSource& source, SceneStep& ops) {
+    try {
+      return source.next(ops);
+    } catch (const SceneError& error) {
+      result_.error = error.what();
+      return false;
+    }
+  }
+
   // False when the verifier found an error, or the engine found itself broken.
   bool try_step(SceneStep& ops) {
     try {

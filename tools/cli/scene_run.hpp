@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -20,6 +21,9 @@ namespace sweepgrid {
 /// What running the engine over one scene came to. The counts do not include the start unless they say so.
 struct SceneResult {
   SceneInfo scene;
+  /// Why the scene could not be read, or not to its end; empty: it could. All else is of the steps before that.
+  std::string error;
+  bool started = false;  ///< the start, at least, was read
   std::uint64_t steps = 0;
   std::size_t objects_first = 0;  ///< after the start
   std::size_t objects_last = 0;
@@ -42,7 +46,7 @@ struct SceneResult {
 };
 
 /// Runs the engine over `source`. Reading the scene, looking up handles, writing events and verifying are not timed.
-/// `events` may be null.
+/// A SceneError ends the run, as the scene's end does, and is told in the result. `events` may be null.
 [[nodiscard]] SceneResult run_scene(SceneSource& source, const RunOptions& options,
                                     const std::shared_ptr<Executor>& executor, EventsFile* events);
 

@@ -181,8 +181,8 @@ void LammpsColumns::read_atom(std::string_view line, const LammpsCell& cell, Sce
     box.max[axis] = centre[axis] + radius;
     // Written so that a NaN is refused, too.
     if (box.min[axis] >= -largest_ && box.max[axis] <= largest_) continue;
-    throw std::invalid_argument(fmt::format("the box from {} to {} on axis {} reaches beyond {}", box.min[axis],
-                                            box.max[axis], "xyz"[axis], largest_));
+    throw std::invalid_argument(fmt::format("the box on axis {}, from {} to {}, is not within -+ {}", "xyz"[axis],
+                                            box.min[axis], box.max[axis], largest_));
   }
 }
 
