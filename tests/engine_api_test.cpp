@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <span>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "engine_client.hpp"
@@ -12,7 +13,25 @@
 namespace sweepgrid {
 namespace {
 
-static_assert(!std::is_copy_constructible_v<Engine2> && !std::is_move_constructible_v<Engine2>);
+static_assert(!std::is_copy_constructible_v<Engine2> && std::is_nothrow_move_constructible_v<Engine2> &&
+              std::is_nothrow_move_assignable_v<Engine2>);
+
+TEST(Engine, CanBeMoved) {
+  std::vector<Engine2> engines;
+  engines.emplace_back(serial());
+  engines[0].insert(1, square(0, 0));
+  const Handle second = engines[0].insert(2, square(0, 0));
+  const auto& events = engines[0].step();
+  ASSERT_EQ(events.begins, (Pairs{{1, 2}}));
+  for (int i = 0; i < 10; ++i) engines.emplace_back(serial());  // moves the first
+  EXPECT_EQ(events.begins, (Pairs{{1, 2}}));
+  engines[5] = std::move(engines[0]);
+  EXPECT_EQ(events.begins, (Pairs{{1, 2}}));
+  engines[5].update(second, square(9, 9));
+  EXPECT_EQ(engines[5].step().ends, (Pairs{{1, 2}}));
+  EXPECT_GT(engines[5].stats().bytes(), 0u);
+  engines[5].validate();
+}
 
 TEST(Engine, HandlesAreGoodAtOnceAndBoxesAreTheLastGiven) {
   Engine2 engine(serial());

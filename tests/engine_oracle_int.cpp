@@ -1,4 +1,4 @@
-#include <sweepgrid/engine/engine_core.inl.hpp>
+#include <sweepgrid/engine/keyed_engine.inl.hpp>
 
 #include "engine_oracle_play.hpp"
 

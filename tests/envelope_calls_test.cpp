@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include <sweepgrid/engine/object_table.hpp>
 #include <sweepgrid/sap/quantizer.hpp>
 #include <sweepgrid/sap/rounding.hpp>
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <sweepgrid/engine/engine.hpp>
+#include <sweepgrid/engine/envelope_box.hpp>
 
 #include "engine_oracle.hpp"
 

@@ -1,10 +1,11 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 
 #include <sweepgrid/engine/envelope_options.hpp>
-#include <sweepgrid/sap/cell_kind.hpp>
+#include <sweepgrid/sap/cell_options.hpp>
 #include <sweepgrid/scheduler/executor.hpp>
 
 namespace sweepgrid {

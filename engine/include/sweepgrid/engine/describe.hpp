@@ -9,17 +9,6 @@
 namespace sweepgrid {
 
 /// How an error message names an object.
-template <class Key>
-[[nodiscard]] std::string describe(const Key& key) {
-  if constexpr (requires(std::ostream & out) { out << key; }) {
-    std::ostringstream out;
-    out << "object " << key;
-    return out.str();
-  } else {
-    return "object with a key that cannot be printed";
-  }
-}
-
 [[nodiscard]] inline std::string describe(Handle handle) {
   return "object of handle " + std::to_string(handle.index) + " (generation " + std::to_string(handle.generation) + ")";
 }

@@ -16,13 +16,14 @@
 #include <sweepgrid/engine/witness_table.hpp>
 #include <sweepgrid/grid/grid_fit.hpp>
 #include <sweepgrid/grid/levels.hpp>
+#include <sweepgrid/sap/cell_kind.hpp>
 #include <sweepgrid/sap/step_budget.hpp>
 #include <sweepgrid/scheduler/stage_graph.hpp>
 
 namespace sweepgrid {
 
 /// The engine without client keys: objects by id, and the step as a graph of stages. Engine adds keys and the order of
-/// events. Not part of the public interface; compiled ahead for the types that Engine names, in 2 and 3 dimensions.
+/// events. Not part of the public interface.
 template <class Scalar, int Dim>
 class EngineCore {
  public:
@@ -200,14 +201,5 @@ class EngineCore {
   std::unique_ptr<StageGraph> graph_;
   StageGraph::StageId reduce_stage_ = 0;
 };
-
-extern template class EngineCore<float, 2>;
-extern template class EngineCore<float, 3>;
-extern template class EngineCore<double, 2>;
-extern template class EngineCore<double, 3>;
-extern template class EngineCore<std::int32_t, 2>;
-extern template class EngineCore<std::int32_t, 3>;
-extern template class EngineCore<std::int16_t, 2>;
-extern template class EngineCore<std::int16_t, 3>;
 
 }  // namespace sweepgrid

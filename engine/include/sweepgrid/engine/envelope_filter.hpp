@@ -107,13 +107,4 @@ class EnvelopeFilter {
   StageGraph::StageId filter_stage_ = 0;
 };
 
-extern template class EnvelopeFilter<float, 2>;
-extern template class EnvelopeFilter<float, 3>;
-extern template class EnvelopeFilter<double, 2>;
-extern template class EnvelopeFilter<double, 3>;
-extern template class EnvelopeFilter<std::int32_t, 2>;
-extern template class EnvelopeFilter<std::int32_t, 3>;
-extern template class EnvelopeFilter<std::int16_t, 2>;
-extern template class EnvelopeFilter<std::int16_t, 3>;
-
 }  // namespace sweepgrid

@@ -201,13 +201,4 @@ class Envelopes {
   EnvelopeReport report_;
 };
 
-extern template class Envelopes<float, 2>;
-extern template class Envelopes<float, 3>;
-extern template class Envelopes<double, 2>;
-extern template class Envelopes<double, 3>;
-extern template class Envelopes<std::int32_t, 2>;
-extern template class Envelopes<std::int32_t, 3>;
-extern template class Envelopes<std::int16_t, 2>;
-extern template class Envelopes<std::int16_t, 3>;
-
 }  // namespace sweepgrid

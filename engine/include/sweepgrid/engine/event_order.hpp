@@ -1,128 +1,105 @@
 #pragma once
 
-#include <algorithm>
+#include <array>
 #include <cstddef>
-#include <cstdint>
+#include <functional>
 #include <span>
-#include <type_traits>
 #include <vector>
 
 #include <sweepgrid/engine/digit_sort.hpp>
-#include <sweepgrid/engine/events.hpp>
+#include <sweepgrid/engine/key_ranks.hpp>
+#include <sweepgrid/engine/sharded_sort.hpp>
+#include <sweepgrid/sap/high_water.hpp>
+#include <sweepgrid/sap/ids.hpp>
+#include <sweepgrid/scheduler/stage_graph.hpp>
 
 namespace sweepgrid {
 
-/// Sorts what arrives in shards into one list, in parallel: each shard is sorted by itself, then the key space is cut
-/// into ranges of about equal size and each range is merged by itself. The result does not depend on the number of
-/// shards or ranges.
-template <class Key, class Order>
+/// The last stages of a step: what the step found is sorted by the client's keys, freed of duplicates, and written to
+/// the client's lists. The result does not depend on the number of threads.
 class EventOrder {
  public:
-  using PairType = Pair<Key>;
+  enum List : std::size_t { kEnds, kBegins, kLists };
 
-  /// An object, not a function: sorting then has it inlined.
-  static constexpr auto kLess = [](const PairType& a, const PairType& b) {
-    const Order order;
-    if constexpr (std::is_integral_v<Key>) {
-      // Without a branch that nobody could foresee.
-      return (order(a.first, b.first) | (!order(b.first, a.first) & order(a.second, b.second))) != 0;
-    } else {
-      if (order(a.first, b.first)) return true;
-      if (order(b.first, a.first)) return false;
-      return static_cast<bool>(order(a.second, b.second));
-    }
+  /// What is sorted: lists of pairs in no order, in which a pair may stand several times, but only in one of them.
+  struct Source {
+    std::function<std::size_t()> lists;
+    std::function<std::span<const PairKey>(List, std::size_t index)> pairs;
+    std::function<ObjectId()> bound;  ///< objects are below it
   };
 
-  /// Puts the two keys in order.
-  static PairType pair(const Key& a, const Key& b) { return Order{}(b, a) ? PairType{b, a} : PairType{a, b}; }
+  /// The client's lists of events: std::vector<Pair<Key>>.
+  using Lists = std::array<void*, kLists>;
 
-  void reset(std::size_t shards) {
-    shards_.resize(shards);
-    for (auto& shard : shards_) shard.clear();
+  /// `keys` must outlive it.
+  EventOrder(const KeyTable& keys, Source source);
+
+  /// Adds the stages after `after`. A run of the graph writes to what write_to() named.
+  void add_stages(StageGraph& graph, StageGraph::StageId after, const Executor& executor);
+  void write_to(const Lists& lists);
+
+  /// All at once, on the calling thread.
+  void run(const Lists& lists);
+
+  /// Empties the client's lists. To be called in every step that does not run the stages, so that memory goes back.
+  void rest();
+
+  void trim(ObjectId bound) {
+    for (KeyRanks& ranks : ranks_) ranks.trim(bound);
   }
-
-  [[nodiscard]] std::size_t shards() const { return shards_.size(); }
-
-  /// The list of a shard, to be filled and then sorted.
-  [[nodiscard]] std::vector<PairType>& shard(std::size_t index) { return shards_[index]; }
-  /// Also drops doubles, which lie in one shard.
-  void sort_shard(std::size_t index) {
-    auto& shard = shards_[index];
-    sort(shard);
-    shard.erase(std::unique(shard.begin(), shard.end()), shard.end());
-  }
-
-  /// Chooses at most `ranges` ranges and sizes `out`; returns how many there are: 0 when nothing is left to be merged.
-  /// Precondition: every shard is sorted.
-  std::size_t cut(std::size_t ranges, std::vector<PairType>& out);
-
-  /// Writes range `index` of the order to `out`. Different ranges may be merged at once.
-  void merge_range(std::size_t index, std::vector<PairType>& out) const;
+  [[nodiscard]] std::size_t bytes() const;
 
  private:
-  static void sort(std::span<PairType> pairs) {
-    if constexpr (DigitSort<Key>::template kFits<Order>) {
-      if (DigitSort<Key>::sort(pairs)) return;
+  struct ByRank {
+    DigitSort& digits;
+    [[nodiscard]] static bool less(const RankPair& a, const RankPair& b) {
+      return a.first < b.first || (a.first == b.first && a.second < b.second);
     }
-    std::sort(pairs.begin(), pairs.end(), kLess);
-  }
+    void sort(std::span<RankPair> pairs) const { digits.sort(pairs); }
+  };
+  using Sort = ShardedSort<RankPair, ByRank>;
 
-  /// Where range `index` begins in a shard; there is one more, at which the last one ends.
-  [[nodiscard]] auto begin_of(std::size_t index, const std::vector<PairType>& shard) const {
-    if (index == 0) return shard.begin();
-    if (index > splitters_.size()) return shard.end();
-    return std::lower_bound(shard.begin(), shard.end(), splitters_[index - 1], kLess);
-  }
+  /// One of the client's lists.
+  struct Target {
+    void* list = nullptr;
+    HighWater high_water;
+  };
 
-  std::vector<std::vector<PairType>> shards_;
-  std::vector<PairType> splitters_;  // the least pair of each range but the first
+  // Stages: `rank` and `merge ranks` where keys are not their own ranks, `order`, `merge`. Each: how many tasks, and
+  // one.
+  std::size_t plan_rank();
+  void rank(std::size_t task);
+  std::size_t plan_merge_ranks();
+  void merge_ranks(std::size_t task);
+  std::size_t plan_order();
+  void order(std::size_t task);
+  std::size_t plan_merge();
+  void merge(std::size_t task);
+
+  template <class Stage>
+  void for_each_stage(Stage&& stage);
+  [[nodiscard]] std::size_t shards() const;
+  [[nodiscard]] bool by_value() const { return ranks_[kEnds].values(); }
+  struct ListRange {
+    std::size_t list;
+    std::size_t range;
+  };
+  [[nodiscard]] ListRange range_of(std::size_t task) const {
+    return task < ranges_[kEnds] ? ListRange{kEnds, task} : ListRange{kBegins, task - ranges_[kEnds]};
+  }
+  template <class Visit>
+  void for_shard(std::size_t list, std::size_t shard, Visit&& visit) const;
+  void resize(Target& target, std::size_t size) const;
+  void write(std::size_t list, const Sort::Range& range) const;
+
+  const KeyTable& keys_;
+  Source source_;
+  std::size_t workers_ = 1;
+  std::array<Target, kLists> targets_;
+  std::array<KeyRanks, kLists> ranks_;
+  std::array<Sort, kLists> sorts_;
+  std::array<std::vector<DigitSort>, kLists> digits_;  // for each shard or range
+  std::array<std::size_t, kLists> ranges_{};           // the tasks of a merge: those of one list, then of the other
 };
-
-template <class Key, class Order>
-std::size_t EventOrder<Key, Order>::cut(std::size_t ranges, std::vector<PairType>& out) {
-  constexpr std::size_t kSmallest = 256;  // a range with fewer events is not worth a task
-  constexpr std::size_t kSamples = 16;    // of all shards for each range
-  if (shards_.size() == 1) {
-    out.swap(shards_[0]);
-    return 0;
-  }
-  std::size_t total = 0;
-  for (const auto& shard : shards_) total += shard.size();
-  out.resize(total);
-  splitters_.clear();
-  if (total == 0) return 0;
-  ranges = std::clamp<std::size_t>(total / kSmallest, 1, ranges);
-  if (ranges == 1) return 1;
-
-  std::vector<PairType> samples;
-  const std::size_t stride = std::max<std::size_t>(1, total / (kSamples * ranges));
-  std::size_t next = stride / 2;  // in the shards one after the other: short ones have their share, too
-  for (const auto& shard : shards_) {
-    for (; next < shard.size(); next += stride) samples.push_back(shard[next]);
-    next -= shard.size();
-  }
-  sort(samples);
-  for (std::size_t range = 1; range < ranges; ++range) {
-    splitters_.push_back(samples[range * samples.size() / ranges]);
-  }
-  return ranges;
-}
-
-// Looks for the ends of its range itself: for all ranges at once that would be the longest serial part of a step.
-template <class Key, class Order>
-void EventOrder<Key, Order>::merge_range(std::size_t index, std::vector<PairType>& out) const {
-  std::size_t place = 0;
-  for (const auto& shard : shards_) place += static_cast<std::size_t>(begin_of(index, shard) - shard.begin());
-  auto end = out.begin() + static_cast<std::ptrdiff_t>(place);
-  const auto begin = end;
-  std::size_t runs = 0;
-  for (const auto& shard : shards_) {
-    const auto first = begin_of(index, shard);
-    const auto last = begin_of(index + 1, shard);
-    runs += first != last ? 1 : 0;
-    end = std::copy(first, last, end);
-  }
-  if (runs > 1) sort({begin, end});
-}
 
 }  // namespace sweepgrid

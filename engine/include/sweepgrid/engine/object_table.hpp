@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <cstring>
 #include <mutex>
+#include <new>
 #include <span>
 #include <stdexcept>
 #include <vector>
@@ -107,9 +108,7 @@ class ObjectTable {
   void cancel_erase(const Share& share, std::span<const Handle> objects);
 
   /// Whether the handle names an object that is live and not erased.
-  [[nodiscard]] bool good(Handle handle) const {
-    return handle.index < bound() && good(handle, records_[handle.index], states_[handle.index]);
-  }
+  [[nodiscard]] bool good(Handle handle) const { return handle.index < bound() && is(handle); }
   [[nodiscard]] Handle handle(ObjectId object) const { return {object, records_[object].generation}; }
 
   [[nodiscard]] Record& record(ObjectId object) { return records_[object]; }
@@ -127,7 +126,10 @@ class ObjectTable {
   void set_widest(double width) { widest_.store(width, std::memory_order_relaxed); }
 
   /// Granules and whether they hold a marked object.
-  [[nodiscard]] std::uint32_t granules() const { return (bound() + (kGranule - 1)) / kGranule; }
+  [[nodiscard]] std::uint32_t granules() const { return granules_of(bound()); }
+  [[nodiscard]] static std::uint32_t granules_of(ObjectId bound) {  // without a sum that could overflow
+    return bound / kGranule + (bound % kGranule != 0 ? 1 : 0);
+  }
   [[nodiscard]] bool granule_marked(std::uint32_t granule) const { return marks_[granule] != 0; }
   void unmark_granule(std::uint32_t granule) { marks_[granule] = 0; }
   void nothing_queued() {
@@ -137,9 +139,11 @@ class ObjectTable {
 
   /// Makes an erased object's id stale; free_ids() then lets it be reused.
   void retire(ObjectId object) {
-    states_[object] = 0;
-    ++records_[object].generation;
+    set_state(object, 0);
+    set_generation(object, records_[object].generation + 1);
   }
+  /// Ids that objects to come will have, the next one last. Those that free_ids() adds stand at the end.
+  [[nodiscard]] std::span<const ObjectId> free_ids() const { return free_; }
   /// Throws nothing after reserve_free() for as many.
   void free_ids(std::span<const ObjectId> ids) { free_.insert(free_.end(), ids.begin(), ids.end()); }
   void reserve_free(std::size_t ids) {
@@ -185,8 +189,22 @@ class ObjectTable {
   }
 
  private:
-  [[nodiscard]] bool good(Handle handle, const Record& record, std::uint8_t state) const {
-    return (state & (kLive | kErased)) == kLive && record.generation == handle.generation;
+  // Stale handles may be tried while other threads give their slots to new objects. So the state and the generation are
+  // atomic: plain loads and stores all the same. The state of a live object is written after its generation.
+  [[nodiscard]] bool is(Handle handle) const {
+    const auto state = load(states_[handle.index], std::memory_order_acquire);
+    return (state & (kLive | kErased)) == kLive &&
+           load(records_[handle.index].generation, std::memory_order_relaxed) == handle.generation;
+  }
+  template <class T>
+  [[nodiscard]] static T load(const T& value, std::memory_order order) {
+    return std::atomic_ref<T>(const_cast<T&>(value)).load(order);
+  }
+  void set_state(ObjectId object, std::uint8_t state) {
+    std::atomic_ref(states_[object]).store(state, std::memory_order_release);
+  }
+  void set_generation(ObjectId object, std::uint32_t generation) {
+    std::atomic_ref(records_[object].generation).store(generation, std::memory_order_relaxed);
   }
 
   // Neighbours of different threads share a granule, so this is atomic; checked first to keep the line shared.
@@ -215,9 +233,16 @@ class ObjectTable {
   [[gnu::always_inline]] bool replace(ObjectId object, const BoxType& box, double& widest);
 
   ObjectId extend(std::size_t count);
+  // To undo a call must not fail: where there is no memory, the id is not used again.
+  void free_after_failure(ObjectId object) noexcept {
+    try {
+      free_.push_back(object);
+    } catch (const std::bad_alloc&) {
+    }
+  }
   void occupy(ObjectId object, bool fresh, const BoxType& box);
   void renew(ObjectId object) {
-    records_[object].generation = first_generation_;
+    set_generation(object, first_generation_);
     records_[object].changed_at = 0;
   }
 

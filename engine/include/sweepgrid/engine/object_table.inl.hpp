@@ -36,7 +36,7 @@ void ObjectTable<Scalar, Dim>::cancel_insert(ObjectId object) {
   retire(object);
   const std::lock_guard lock(allocation_);
   ++latest_generation_;
-  free_.push_back(object);
+  free_after_failure(object);
 }
 
 template <class Scalar, int Dim>
@@ -53,11 +53,11 @@ bool ObjectTable<Scalar, Dim>::update(Handle object, const BoxType& box) {
 template <class Scalar, int Dim>
 inline bool ObjectTable<Scalar, Dim>::replace(ObjectId object, const BoxType& box, double& widest) {
   Record& record = records_[object];
-  std::uint8_t& state = states_[object];
+  const std::uint8_t state = states_[object];
   if ((state & kQueued) == 0) {
     if (same_bits(record.box, box)) return false;  // a resting object that its client reports anyway costs nothing more
     record.before = record.box;
-    state |= kUpdated;
+    set_state(object, state | kUpdated);
     mark_granule(object / kGranule);
   }
   record.box = box;
@@ -68,7 +68,7 @@ inline bool ObjectTable<Scalar, Dim>::replace(ObjectId object, const BoxType& bo
 template <class Scalar, int Dim>
 void ObjectTable<Scalar, Dim>::erase(ObjectId object) {
   if ((states_[object] & kQueued) == 0) records_[object].before = records_[object].box;
-  states_[object] |= kErased;
+  set_state(object, states_[object] | kErased);
   mark(object);
   live_.fetch_sub(1, std::memory_order_relaxed);
 }
@@ -113,7 +113,7 @@ void ObjectTable<Scalar, Dim>::finish_insert(const Share& share) {
 template <class Scalar, int Dim>
 void ObjectTable<Scalar, Dim>::cancel_insert(const NewIds& ids) {
   for (std::size_t item = 0; item < ids.count_; ++item) {
-    states_[ids[item]] = 0;
+    set_state(ids[item], 0);
     mark_granule(ids[item] / kGranule);
   }
   const std::lock_guard lock(allocation_);
@@ -124,7 +124,7 @@ void ObjectTable<Scalar, Dim>::cancel_insert(const NewIds& ids) {
   } else {
     for (ObjectId object = ids.first_ + fresh; object-- > ids.first_;) {
       renew(object);
-      free_.push_back(object);
+      free_after_failure(object);
     }
   }
   free_.insert(free_.end(), ids.reused_.rbegin(), ids.reused_.rend());
@@ -141,10 +141,8 @@ void ObjectTable<Scalar, Dim>::begin_update(Share& share, std::span<const Handle
     const std::size_t item = now.items[now.checked];
     const Handle object = objects[item];
     if (object.index >= end) break;
-    Record& record = records_[object.index];
-    std::uint8_t& state = states_[object.index];
-    if (!good(object, record, state) || !boxes[item].valid()) break;
-    applies = applies && (state & kQueued) == 0;
+    if (!is(object) || !boxes[item].valid()) break;
+    applies = applies && (states_[object.index] & kQueued) == 0;
     if (!applies) continue;
     ++now.done;
     now.queued |= replace(object.index, boxes[item], now.widest);
@@ -174,7 +172,7 @@ void ObjectTable<Scalar, Dim>::cancel_update(const Share& share, std::span<const
     const ObjectId object = objects[share.items[i]].index;
     if ((states_[object] & kUpdated) == 0) continue;  // an item that changed nothing, or taken back already
     records_[object].box = records_[object].before;
-    states_[object] &= static_cast<std::uint8_t>(~kUpdated);
+    set_state(object, states_[object] & static_cast<std::uint8_t>(~kUpdated));
   }
   mark_all(share, objects);
 }
@@ -186,11 +184,11 @@ void ObjectTable<Scalar, Dim>::begin_erase(Share& share, std::span<const Handle>
     prefetch(share.items, share.done, objects, nullptr, end);
     const Handle object = objects[share.items[share.done]];
     if (object.index >= end) break;
+    if (!is(object)) break;
     Record& record = records_[object.index];
-    std::uint8_t& state = states_[object.index];
-    if (!good(object, record, state)) break;
+    const std::uint8_t state = states_[object.index];
     if ((state & kQueued) == 0) record.before = record.box;
-    state |= kErased;
+    set_state(object.index, state | kErased);
     mark_granule(object.index / kGranule);
   }
   share.checked = share.done;
@@ -206,7 +204,8 @@ void ObjectTable<Scalar, Dim>::finish_erase(const Share& share) {
 template <class Scalar, int Dim>
 void ObjectTable<Scalar, Dim>::cancel_erase(const Share& share, std::span<const Handle> objects) {
   for (std::size_t i = 0; i < share.done; ++i) {
-    states_[objects[share.items[i]].index] &= static_cast<std::uint8_t>(~kErased);
+    const ObjectId object = objects[share.items[i]].index;
+    set_state(object, states_[object] & static_cast<std::uint8_t>(~kErased));
   }
   mark_all(share, objects);
 }
@@ -233,7 +232,8 @@ ObjectId ObjectTable<Scalar, Dim>::extend(std::size_t count) {
   records_.grow(end);
   states_.grow(end);
   marks_.grow((end - 1) / kGranule + std::uint64_t{1});
-  for (std::uint64_t granule = (first + (kGranule - 1)) / kGranule; granule <= (end - 1) / kGranule; ++granule) {
+  for (ObjectId object = first; object < end; ++object) states_[object] = 0;  // stale handles may be tried
+  for (std::uint64_t granule = granules_of(first); granule <= (end - 1) / kGranule; ++granule) {
     marks_[static_cast<std::uint32_t>(granule)] = 0;
   }
   trim_at_ = end / 4;
@@ -246,7 +246,7 @@ void ObjectTable<Scalar, Dim>::occupy(ObjectId object, bool fresh, const BoxType
   Record& record = records_[object];
   record.box = box;
   if (fresh) renew(object);
-  states_[object] = kLive | kInserted;
+  set_state(object, kLive | kInserted);
 }
 
 template <class Scalar, int Dim>
@@ -261,7 +261,7 @@ bool ObjectTable<Scalar, Dim>::trim() {
   bound_.store(end, std::memory_order_release);
   records_.shrink(end);
   states_.shrink(end);
-  marks_.shrink((end + (kGranule - 1)) / kGranule);
+  marks_.shrink(granules_of(end));
   first_generation_ = latest_generation_;
   return true;
 }

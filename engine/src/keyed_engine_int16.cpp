@@ -1,0 +1,10 @@
+#include <cstdint>
+
+#include <sweepgrid/engine/keyed_engine.inl.hpp>
+
+namespace sweepgrid {
+
+template class KeyedEngine<std::int16_t, 2>;
+template class KeyedEngine<std::int16_t, 3>;
+
+}  // namespace sweepgrid

@@ -1,0 +1,31 @@
+#pragma once
+
+namespace sweepgrid {
+
+/// The kinds of cell. All give the same overlaps; they differ in what makes them fast.
+enum class CellKind {
+  kAuto,       ///< rows at first; a grid has a cell change its kind as long as another is clearly cheaper
+  kRows,       ///< rows of coordinates, compared with vector instructions: cells of few objects, however they move
+  kBatch,      ///< batch insertion and removal (section 3.2.1): most objects move, or many come and go
+  kSegmented,  ///< segmented interval lists (section 3.2.2): few objects move, few come and go
+  kClassic,    ///< Baraff's sweep and prune: a baseline
+  kPlane,      ///< non-incremental sweeping plane: a baseline
+};
+
+/// How segmented cells apply the inserts and erases of a drain.
+enum class Integration {
+  kAuto,       ///< presorted from the measured number of inserts and erases on (sap/README.md)
+  kOneByOne,   ///< each by a search of its own (section 3.2.2)
+  kPresorted,  ///< sorted, then segment by segment in one pass: what sections 4.1 and 4.2 suggest
+};
+
+/// Settings of a cell; the defaults are measured (see sap/README.md).
+struct CellOptions {
+  CellKind kind = CellKind::kAuto;
+  /// Endpoints per segment, at least 4 (kSegmented only; the paper finds about 2^5).
+  int segment_capacity = 32;
+  /// kSegmented only. All choices give the same overlaps; the others than kAuto are for studies.
+  Integration integration = Integration::kAuto;
+};
+
+}  // namespace sweepgrid
