@@ -13,7 +13,7 @@
 
 #include "accuracy/guarded_run.hpp"
 
-namespace sweepgrid::accuracy {
+namespace sweepgrid::accuracy::accuracy_guard_test {
 namespace {
 
 constexpr std::uint64_t kMegabyte = std::uint64_t{1} << 20;
@@ -97,4 +97,4 @@ TEST(GuardedRun, ACrashIsAResult) {
 }
 
 }  // namespace
-}  // namespace sweepgrid::accuracy
+}  // namespace sweepgrid::accuracy::accuracy_guard_test

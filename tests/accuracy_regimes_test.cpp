@@ -20,7 +20,7 @@
 #include "scenes/open_scene.hpp"
 #include "scenes/rounded_step.hpp"
 
-namespace sweepgrid::accuracy {
+namespace sweepgrid::accuracy::accuracy_regimes_test {
 namespace {
 
 constexpr std::uint64_t kObjects = 500;
@@ -233,4 +233,4 @@ INSTANTIATE_TEST_SUITE_P(Accuracy, RegimesTest,
 TEST(RegimeBounds, AreThoseOfTheRegimes) { EXPECT_EQ(std::size(kBounds), regimes().size()); }
 
 }  // namespace
-}  // namespace sweepgrid::accuracy
+}  // namespace sweepgrid::accuracy::accuracy_regimes_test

@@ -17,7 +17,7 @@
 #include "scenes_data/fingerprint.hpp"
 #include "scenes_data/scene_files.hpp"
 
-namespace sweepgrid {
+namespace sweepgrid::accuracy_scenes_test {
 namespace {
 
 using scene_files::failure;
@@ -262,4 +262,4 @@ TEST(RegimeScenes, OrientedBoxesRefuseWhatTheyCannotBe) {
 }
 
 }  // namespace
-}  // namespace sweepgrid
+}  // namespace sweepgrid::accuracy_scenes_test

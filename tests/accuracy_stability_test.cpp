@@ -12,7 +12,7 @@
 #include "accuracy/regimes.hpp"
 #include "study/stability/stability_study.hpp"
 
-namespace sweepgrid::study {
+namespace sweepgrid::study::accuracy_stability_test {
 namespace {
 
 using accuracy::Trial;
@@ -135,7 +135,7 @@ TEST(StabilityReport, ShowsGrowthRelativeToAsManyCalmObjects) {
 }
 
 TEST(StabilityReport, ASupersetIsNoFailureOfWhoClaimsNoMore) {
-  if (!accuracy::find_method("bullet/axis16")) GTEST_SKIP();
+  if (!accuracy::find_method("bullet/axis16")) GTEST_SKIP() << "built without Bullet (Debian: libbullet-dev)";
   StabilityResults results = calm_results();
   for (const std::string method : {"bullet/axis16", "bullet/dbvt"}) {
     results.hard["far=1e8"][method].verdict = Verdict::kSuperset;
@@ -180,4 +180,4 @@ TEST(TrialJson, ComesBackAsItWas) {
 }
 
 }  // namespace
-}  // namespace sweepgrid::study
+}  // namespace sweepgrid::study::accuracy_stability_test

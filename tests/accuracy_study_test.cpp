@@ -14,7 +14,7 @@
 #include "study/accuracy/accuracy_study.hpp"
 #include "study/accuracy/best_points.hpp"
 
-namespace sweepgrid::study {
+namespace sweepgrid::study::accuracy_study_test {
 namespace {
 
 using accuracy::TruthKind;
@@ -231,4 +231,4 @@ TEST(CheapestComplete, ChargesForEveryPair) {
 }
 
 }  // namespace
-}  // namespace sweepgrid::study
+}  // namespace sweepgrid::study::accuracy_study_test

@@ -11,7 +11,7 @@
 #include "accuracy/accuracy_json.hpp"
 #include "accuracy/accuracy_tally.hpp"
 
-namespace sweepgrid::accuracy {
+namespace sweepgrid::accuracy::accuracy_tally_test {
 namespace {
 
 using Delays = std::map<std::int64_t, std::uint64_t>;
@@ -144,4 +144,4 @@ TEST(AccuracyJson, HoldsEveryNumber) {
 }
 
 }  // namespace
-}  // namespace sweepgrid::accuracy
+}  // namespace sweepgrid::accuracy::accuracy_tally_test

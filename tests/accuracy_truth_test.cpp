@@ -21,7 +21,7 @@
 
 #include "sanitized.hpp"
 
-namespace sweepgrid::accuracy {
+namespace sweepgrid::accuracy::accuracy_truth_test {
 namespace {
 
 using Rational = boost::multiprecision::cpp_rational;
@@ -367,4 +367,4 @@ TEST(Truths, StandAsTheyMustToEachOther) {
 }
 
 }  // namespace
-}  // namespace sweepgrid::accuracy
+}  // namespace sweepgrid::accuracy::accuracy_truth_test

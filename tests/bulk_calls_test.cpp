@@ -16,7 +16,7 @@
 
 #include <sweepgrid/engine/engine.hpp>
 
-namespace sweepgrid {
+namespace sweepgrid::bulk_calls_test {
 namespace {
 
 using Key = std::uint64_t;
@@ -363,4 +363,4 @@ TEST_P(BulkCalls, MemoryComesBackWhenMostAreErased) {
 }
 
 }  // namespace
-}  // namespace sweepgrid
+}  // namespace sweepgrid::bulk_calls_test

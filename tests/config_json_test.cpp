@@ -10,7 +10,7 @@
 
 #include <sweepgrid/engine/engine.hpp>
 
-namespace sweepgrid {
+namespace sweepgrid::config_json_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -125,4 +125,4 @@ TEST(ConfigJson, ARefusalChangesNothing) {
 }
 
 }  // namespace
-}  // namespace sweepgrid
+}  // namespace sweepgrid::config_json_test

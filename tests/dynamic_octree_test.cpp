@@ -13,7 +13,7 @@
 
 #include "baselines/dynamic_octree.hpp"
 
-namespace sweepgrid::baselines {
+namespace sweepgrid::baselines::dynamic_octree_test {
 namespace {
 
 using IdPair = std::pair<ObjectId, ObjectId>;
@@ -294,4 +294,4 @@ TEST(DynamicOctree, SaysNothingOfWhatComesAndGoesBetweenSteps) {
 }
 
 }  // namespace
-}  // namespace sweepgrid::baselines
+}  // namespace sweepgrid::baselines::dynamic_octree_test

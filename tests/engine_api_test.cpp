@@ -10,7 +10,7 @@
 
 #include "engine_client.hpp"
 
-namespace sweepgrid {
+namespace sweepgrid::engine_api_test {
 namespace {
 
 static_assert(!std::is_copy_constructible_v<Engine2> && std::is_nothrow_move_constructible_v<Engine2> &&
@@ -142,4 +142,4 @@ TEST(Engine, EmptyBulkCallsDoNothing) {
 }
 
 }  // namespace
-}  // namespace sweepgrid
+}  // namespace sweepgrid::engine_api_test

@@ -10,7 +10,7 @@
 
 #include "engine_client.hpp"
 
-namespace sweepgrid::oracle {
+namespace sweepgrid::oracle::engine_budget_test {
 namespace {
 
 /// What a client heard, step by step.
@@ -158,9 +158,9 @@ TEST_P(BudgetScripts, RefusedStepsAreAsIfNeverCalled) {
 INSTANTIATE_TEST_SUITE_P(Regimes, BudgetScripts, ::testing::Range(std::size_t{0}, regimes().size()));
 
 }  // namespace
-}  // namespace sweepgrid::oracle
+}  // namespace sweepgrid::oracle::engine_budget_test
 
-namespace sweepgrid {
+namespace sweepgrid::engine_budget_test {
 namespace {
 
 // 2000 objects at one point: two million pairs, whose deltas alone are 32 MB.
@@ -258,4 +258,4 @@ TEST(Budget, HandlesAndKeysOfARefusedStepAreAsTheirCallsLeftThem) {
 }
 
 }  // namespace
-}  // namespace sweepgrid
+}  // namespace sweepgrid::engine_budget_test

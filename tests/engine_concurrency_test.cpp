@@ -14,7 +14,7 @@
 
 #include "engine_client.hpp"
 
-namespace sweepgrid {
+namespace sweepgrid::engine_concurrency_test {
 namespace {
 
 TEST(EngineConcurrency, QueueingFromManyThreadsIsTheSameAsFromOne) {
@@ -182,4 +182,4 @@ TEST(EngineConcurrency, BulkCallsFromManyThreads) {
 }
 
 }  // namespace
-}  // namespace sweepgrid
+}  // namespace sweepgrid::engine_concurrency_test

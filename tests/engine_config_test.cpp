@@ -7,7 +7,7 @@
 
 #include "engine_client.hpp"
 
-namespace sweepgrid {
+namespace sweepgrid::engine_config_test {
 namespace {
 
 TEST(EngineConfig, RefusesWhatIsOutOfRangeAndNamesIt) {
@@ -84,4 +84,4 @@ TEST(EngineConfig, ScenesOfEveryScaleWork) {
 }
 
 }  // namespace
-}  // namespace sweepgrid
+}  // namespace sweepgrid::engine_config_test

@@ -6,7 +6,7 @@
 
 #include "engine_oracle.hpp"
 
-namespace sweepgrid::oracle {
+namespace sweepgrid::oracle::engine_determinism_test {
 namespace {
 
 using Ops = EngineOps<float, 2>;
@@ -192,4 +192,4 @@ TEST(EngineCounters, AreTheSameForEveryOrderOfUpdatesAndErases) {
 }
 
 }  // namespace
-}  // namespace sweepgrid::oracle
+}  // namespace sweepgrid::oracle::engine_determinism_test

@@ -13,7 +13,7 @@
 
 #include "engine_oracle.hpp"
 
-namespace sweepgrid::oracle {
+namespace sweepgrid::oracle::engine_follow_test {
 namespace {
 
 using Engine2 = Engine<float, 2>;
@@ -251,4 +251,4 @@ TEST(EngineFollowsTheFew, ACrowdedCellChangesItsKindAndBack) {
 }
 
 }  // namespace
-}  // namespace sweepgrid::oracle
+}  // namespace sweepgrid::oracle::engine_follow_test

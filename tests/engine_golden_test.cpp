@@ -21,7 +21,7 @@
 
 #include <sweepgrid/engine/engine.hpp>
 
-namespace sweepgrid {
+namespace sweepgrid::engine_golden_test {
 namespace {
 
 std::string path_of(const std::string& name) { return SWEEPGRID_SOURCE_DIR "/tests/golden/" + name + ".txt"; }
@@ -118,4 +118,4 @@ INSTANTIATE_TEST_SUITE_P(Files, EngineGolden, ::testing::Values("closed_boxes", 
                          [](const auto& file) { return std::string(file.param); });
 
 }  // namespace
-}  // namespace sweepgrid
+}  // namespace sweepgrid::engine_golden_test

@@ -16,7 +16,7 @@
 
 #include "engine_client.hpp"
 
-namespace sweepgrid {
+namespace sweepgrid::engine_keys_test {
 namespace {
 
 template <class Key, class EngineType, class Model>
@@ -292,4 +292,4 @@ TEST(EngineKeys, AKeyThatCannotBeStoredLeavesNoObject) {
 }
 
 }  // namespace
-}  // namespace sweepgrid
+}  // namespace sweepgrid::engine_keys_test

@@ -38,7 +38,7 @@ void operator delete[](void* memory) noexcept { std::free(memory); }
 void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 void operator delete[](void* memory, std::size_t) noexcept { std::free(memory); }
 
-namespace sweepgrid::oracle {
+namespace sweepgrid::oracle::engine_memory_test {
 namespace {
 
 /// Steps while `count` allocations from the given one on fail. Returns whether the step was done.
@@ -135,4 +135,4 @@ TEST(WithoutMemory, AStepIsDoneWhollyOrNotAtAll) {
 }
 
 }  // namespace
-}  // namespace sweepgrid::oracle
+}  // namespace sweepgrid::oracle::engine_memory_test

@@ -4,7 +4,7 @@
 
 #include "engine_oracle_play.hpp"
 
-namespace sweepgrid::oracle {
+namespace sweepgrid::oracle::engine_oracle_test {
 namespace {
 
 std::string name_of(const ::testing::TestParamInfo<SceneRegime>& info) { return info.param.name; }
@@ -35,4 +35,4 @@ INSTANTIATE_TEST_SUITE_P(Threads, EngineOracleLarge, ::testing::ValuesIn(kThread
                          ::testing::PrintToStringParamName());
 
 }  // namespace
-}  // namespace sweepgrid::oracle
+}  // namespace sweepgrid::oracle::engine_oracle_test

@@ -9,7 +9,7 @@
 
 #include "engine_client.hpp"
 
-namespace sweepgrid {
+namespace sweepgrid::engine_refusals_test {
 namespace {
 
 /// Two engines that are told the same; one of them is also told what it must refuse.
@@ -204,4 +204,4 @@ TEST(Engine, RefusedCallsBeforeTheFirstStepLeaveNoTrace) {
 }
 
 }  // namespace
-}  // namespace sweepgrid
+}  // namespace sweepgrid::engine_refusals_test

@@ -6,7 +6,7 @@
 
 #include "engine_client.hpp"
 
-namespace sweepgrid {
+namespace sweepgrid::engine_stats_test {
 namespace {
 
 TEST(EngineStats, CountWhatHappened) {
@@ -252,4 +252,4 @@ TEST(EngineStats, TasksAreRecordedOnDemand) {
 }
 
 }  // namespace
-}  // namespace sweepgrid
+}  // namespace sweepgrid::engine_stats_test

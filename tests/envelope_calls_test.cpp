@@ -18,7 +18,7 @@
 
 #include "envelope_play.hpp"
 
-namespace sweepgrid::oracle {
+namespace sweepgrid::oracle::envelope_calls_test {
 namespace {
 
 using Box2 = Box<double, 2>;
@@ -316,4 +316,4 @@ TEST(Envelope, ReportsTheStagesOfTheFilter) {
 }
 
 }  // namespace
-}  // namespace sweepgrid::oracle
+}  // namespace sweepgrid::oracle::envelope_calls_test

@@ -8,7 +8,7 @@
 
 #include "envelope_play.hpp"
 
-namespace sweepgrid::oracle {
+namespace sweepgrid::oracle::envelope_oracle_test {
 namespace {
 
 struct Setting {
@@ -144,4 +144,4 @@ TEST(EnvelopeThreads, LeaveNoTrace) {
 }
 
 }  // namespace
-}  // namespace sweepgrid::oracle
+}  // namespace sweepgrid::oracle::envelope_oracle_test

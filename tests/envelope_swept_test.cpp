@@ -11,7 +11,7 @@
 
 #include "envelope_play.hpp"
 
-namespace sweepgrid::oracle {
+namespace sweepgrid::oracle::envelope_swept_test {
 namespace {
 
 __extension__ using Wide = __int128;
@@ -306,4 +306,4 @@ TEST(Swept, AStrideCoversTheWaySinceTheLatestQuery) {
 }
 
 }  // namespace
-}  // namespace sweepgrid::oracle
+}  // namespace sweepgrid::oracle::envelope_swept_test

@@ -21,7 +21,7 @@
 
 #include "op_script.hpp"
 
-namespace sweepgrid {
+namespace sweepgrid::event_order_test {
 namespace {
 
 /// So many workers as far as anybody can see; one thread does all, the last task first.
@@ -240,4 +240,4 @@ TEST(DigitSort, GivesBackWhatItDoesNotNeedForLong) {
 }
 
 }  // namespace
-}  // namespace sweepgrid
+}  // namespace sweepgrid::event_order_test

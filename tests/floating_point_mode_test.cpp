@@ -14,7 +14,7 @@
 
 #include "client_mode.hpp"
 
-namespace sweepgrid {
+namespace sweepgrid::floating_point_mode_test {
 namespace {
 
 using oracle::ClientMode;
@@ -136,4 +136,4 @@ TEST_P(ModeOfWork, IsStandardInEveryPlanAndTask) {
 }
 
 }  // namespace
-}  // namespace sweepgrid
+}  // namespace sweepgrid::floating_point_mode_test

@@ -19,7 +19,7 @@
 
 #include "op_script.hpp"
 
-namespace sweepgrid {
+namespace sweepgrid::grid_spec_test {
 namespace {
 
 using Fit2 = GridFit<double, 2>;
@@ -366,4 +366,4 @@ TEST(GridFit, TellsHowMuchOfItIsWhereAnotherWas) {
 }
 
 }  // namespace
-}  // namespace sweepgrid
+}  // namespace sweepgrid::grid_spec_test

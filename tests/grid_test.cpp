@@ -18,7 +18,7 @@
 #include "grid_client.hpp"
 #include "op_script.hpp"
 
-namespace sweepgrid {
+namespace sweepgrid::grid_test {
 namespace {
 
 using Box2 = Box<double, 2>;
@@ -410,4 +410,4 @@ INSTANTIATE_TEST_SUITE_P(Steps, SmallGrid, ::testing::Bool(),
                          [](const auto& dense) { return dense.param ? "Dense" : "Sparse"; });
 
 }  // namespace
-}  // namespace sweepgrid
+}  // namespace sweepgrid::grid_test

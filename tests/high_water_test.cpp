@@ -10,7 +10,7 @@
 
 #include <sweepgrid/sap/high_water.hpp>
 
-namespace sweepgrid {
+namespace sweepgrid::high_water_test {
 namespace {
 
 std::size_t rounded(std::size_t used) { return (used + 15) / 16 * 16; }
@@ -86,4 +86,4 @@ TEST(HighWater, WhatWasUsedOnceGoesBackAfter64Steps) {
 }
 
 }  // namespace
-}  // namespace sweepgrid
+}  // namespace sweepgrid::high_water_test

@@ -12,7 +12,7 @@
 
 #include "grid_client.hpp"
 
-namespace sweepgrid {
+namespace sweepgrid::levels_test {
 namespace {
 
 using Levels2 = Levels<double, 2>;
@@ -167,4 +167,4 @@ TEST_F(LevelsTest, ASingleGridIsEverybodysHome) {
 }
 
 }  // namespace
-}  // namespace sweepgrid
+}  // namespace sweepgrid::levels_test

@@ -9,7 +9,7 @@
 
 #include "op_script.hpp"
 
-namespace sweepgrid {
+namespace sweepgrid::object_slots_test {
 namespace {
 
 /// Everything that can be asked agrees with `model`.
@@ -84,4 +84,4 @@ TEST(ObjectSlots, SlotsDoNotMoveWhileOthersComeAndGo) {
 }
 
 }  // namespace
-}  // namespace sweepgrid
+}  // namespace sweepgrid::object_slots_test

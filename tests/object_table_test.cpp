@@ -14,7 +14,7 @@
 
 #include "op_script.hpp"
 
-namespace sweepgrid {
+namespace sweepgrid::object_table_test {
 namespace {
 
 // ---- StableVector
@@ -222,4 +222,4 @@ TEST(ObjectTable, TakesCallsForDifferentObjectsAtOnce) {
 }
 
 }  // namespace
-}  // namespace sweepgrid
+}  // namespace sweepgrid::object_table_test

@@ -14,7 +14,7 @@
 #include "client_mode.hpp"
 #include "op_script.hpp"
 
-namespace sweepgrid {
+namespace sweepgrid::ordered_box_test {
 namespace {
 
 using oracle::Palette;
@@ -228,4 +228,4 @@ TYPED_TEST(Endpoints, AreOrderedByValueThenMinBeforeMaxThenOwner) {
 }
 
 }  // namespace
-}  // namespace sweepgrid
+}  // namespace sweepgrid::ordered_box_test

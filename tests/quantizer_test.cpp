@@ -14,7 +14,7 @@
 
 #include "client_mode.hpp"
 
-namespace sweepgrid {
+namespace sweepgrid::quantizer_test {
 namespace {
 
 template <class Int>
@@ -166,4 +166,4 @@ TEST(Quantizer, RefusesWhatItCannotServe) {
 }
 
 }  // namespace
-}  // namespace sweepgrid
+}  // namespace sweepgrid::quantizer_test

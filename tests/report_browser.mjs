@@ -1,6 +1,5 @@
 // The page of a study report in headless Chromium: draws, switches, sorts, darkens, fits a phone, prints.
 //   node report_browser.mjs MODULES SAMPLE FOLDER    SAMPLE: the program report_sample; pictures go to FOLDER
-// Exit status 77: Chromium is not here.
 
 import assert from "node:assert/strict";
 import {execFileSync} from "node:child_process";
@@ -18,8 +17,8 @@ function findChromium() {
 }
 const executablePath = findChromium();
 if (!executablePath) {
-  console.error("skipped: Chromium is not installed (Debian: apt-get install chromium), so the page was not tried");
-  process.exit(77);
+  console.error("Chromium is not installed (Debian: apt-get install chromium), so the page cannot be tried");
+  process.exit(1);
 }
 
 rmSync(folder, {recursive: true, force: true});

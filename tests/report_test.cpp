@@ -16,7 +16,7 @@
 #include "study/report_html.hpp"
 #include "study/report_json.hpp"
 
-namespace sweepgrid::study {
+namespace sweepgrid::study::report_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -183,4 +183,4 @@ TEST(ReportFiles, AFolderThatCannotBeIsAnError) {
 }
 
 }  // namespace
-}  // namespace sweepgrid::study
+}  // namespace sweepgrid::study::report_test

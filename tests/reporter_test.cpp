@@ -14,7 +14,7 @@
 
 #include "op_script.hpp"
 
-namespace sweepgrid {
+namespace sweepgrid::reporter_test {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -203,4 +203,4 @@ TEST(Reporter, TheCornerIsInTheRangesOfBothBoxes) {
 }
 
 }  // namespace
-}  // namespace sweepgrid
+}  // namespace sweepgrid::reporter_test

@@ -14,7 +14,7 @@
 
 #include "client_mode.hpp"
 
-namespace sweepgrid {
+namespace sweepgrid::rounding_test {
 namespace {
 
 using Double = std::numeric_limits<double>;
@@ -290,4 +290,4 @@ TEST(Rounding, SumsOfIntegersStayInTheirType) {
 }
 
 }  // namespace
-}  // namespace sweepgrid
+}  // namespace sweepgrid::rounding_test

@@ -22,7 +22,7 @@
 #include "sap_oracle.hpp"
 #include "visit_script.hpp"
 
-namespace sweepgrid {
+namespace sweepgrid::row_cell_test {
 namespace {
 
 using oracle::BoxOp;
@@ -350,4 +350,4 @@ TEST(RowCell, HoldsLittleMoreMemoryThanItUses) {
 }
 
 }  // namespace
-}  // namespace sweepgrid
+}  // namespace sweepgrid::row_cell_test

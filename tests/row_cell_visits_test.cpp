@@ -14,7 +14,7 @@
 #include "op_script.hpp"
 #include "visit_script.hpp"
 
-namespace sweepgrid {
+namespace sweepgrid::row_cell_visits_test {
 namespace {
 
 using oracle::Regime;
@@ -92,4 +92,4 @@ INSTANTIATE_TEST_SUITE_P(Rows, RowCellVisits, testing::ValuesIn(row_kernel_targe
                          [](const auto& given) { return given.param; });
 
 }  // namespace
-}  // namespace sweepgrid
+}  // namespace sweepgrid::row_cell_visits_test

@@ -21,7 +21,7 @@
 #include "sap_oracle.hpp"
 #include "sap_play.hpp"
 
-namespace sweepgrid {
+namespace sweepgrid::sap_test {
 
 namespace {
 
@@ -292,4 +292,4 @@ TEST(MakeCell, RefusesSegmentsBelowFourEndpoints) {
 }
 
 }  // namespace
-}  // namespace sweepgrid
+}  // namespace sweepgrid::sap_test

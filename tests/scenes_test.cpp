@@ -29,7 +29,7 @@
 #include "scenes_data/fingerprint.hpp"
 #include "scenes_data/scene_files.hpp"
 
-namespace sweepgrid {
+namespace sweepgrid::scenes_test {
 namespace {
 
 using scene_files::bytes_failure;
@@ -697,4 +697,4 @@ TEST(Generators, NameTheParameterThatIsWrong) {
 }
 
 }  // namespace
-}  // namespace sweepgrid
+}  // namespace sweepgrid::scenes_test

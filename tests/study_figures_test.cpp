@@ -2,6 +2,8 @@
 // what was measured, and the program writes a whole report however often it is stopped.
 #include <sys/wait.h>
 
+#include <algorithm>
+#include <csignal>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
@@ -22,7 +24,7 @@
 #include "study/figures/paper_claims.hpp"
 #include "study/figures/results.hpp"
 
-namespace sweepgrid::study {
+namespace sweepgrid::study::study_figures_test {
 namespace {
 
 using nlohmann::json;
@@ -200,6 +202,12 @@ class Study : public testing::Test {
     std::ifstream file(directory_.path("stderr"));
     return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
   }
+  [[nodiscard]] std::vector<std::string> point_lines() const {
+    std::ifstream file(directory_.path("study-figures.points.jsonl"));
+    std::vector<std::string> lines;
+    for (std::string line; std::getline(file, line);) lines.push_back(line);
+    return lines;
+  }
   [[nodiscard]] std::string out() const { return "--out '" + directory_.path("") + "'"; }
   /// What to put before the program, for a signal to reach it once a point is finished: never before it listens.
   [[nodiscard]] std::string after_first_point(const std::string& signal) const {
@@ -212,17 +220,35 @@ class Study : public testing::Test {
   scene_files::Directory directory_;
 };
 
-TEST_F(Study, ComesToItsEndHoweverItIsStopped) {
+// The whole figure takes half a minute, its first point under a second: a signal after that is never too late.
+TEST_F(Study, IsStoppedBySignalsAndKeepsItsPoints) {
+  const std::string arguments = "--figure 8 " + out();
+  EXPECT_EQ(run(arguments, after_first_point("TERM")), 130) << said();
+  EXPECT_NE(said().find("the same command goes on"), std::string::npos) << said();
+  const std::vector<std::string> lines = point_lines();
+  EXPECT_EQ(run(arguments, after_first_point("KILL")), 128 + SIGKILL) << said();
+  const std::vector<std::string> more = point_lines();
+  ASSERT_GE(more.size(), lines.size());
+  EXPECT_TRUE(std::equal(lines.begin(), lines.end(), more.begin()));
+}
+
+TEST_F(Study, ComesToItsEndWhereverItWasStopped) {
   const std::string arguments = "--quick --figure 8 " + out();
-  const int interrupted = run(arguments, after_first_point("TERM"));
-  EXPECT_TRUE(interrupted == 130 || interrupted == 0) << interrupted << said();
-  EXPECT_EQ(interrupted == 130, said().find("the same command goes on") != std::string::npos) << said();
-  (void)run(arguments, after_first_point("KILL"));
+  EXPECT_EQ(run(arguments), 0) << said();
+  const std::vector<std::string> whole = point_lines();
+  ASSERT_GT(whole.size(), 5U);
+  {  // Killed while it wrote the fifth line.
+    std::ofstream file(directory_.path("study-figures.points.jsonl"), std::ios::trunc);
+    for (std::size_t i = 0; i < 4; ++i) file << whole[i] << '\n';
+    file << whole[4].substr(0, whole[4].size() / 2);
+  }
   EXPECT_EQ(run(arguments), 0) << said();
   EXPECT_NE(said().find("finished points are taken"), std::string::npos) << said();
+  const std::vector<std::string> lines = point_lines();
+  ASSERT_GE(lines.size(), 4U);
+  EXPECT_TRUE(std::equal(lines.begin(), lines.begin() + 4, whole.begin())) << "measured again";
   std::set<std::string> points;
-  std::ifstream file(directory_.path("study-figures.points.jsonl"));
-  for (std::string line; std::getline(file, line);) {
+  for (const std::string& line : lines) {
     const json parsed = json::parse(line);
     if (!parsed.contains("point")) continue;
     EXPECT_TRUE(points.insert(parsed["point"]).second) << "measured twice: " << line;
@@ -246,4 +272,4 @@ TEST_F(Study, NamesWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace sweepgrid::study
+}  // namespace sweepgrid::study::study_figures_test

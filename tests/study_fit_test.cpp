@@ -10,7 +10,7 @@
 #include "measure/spread.hpp"
 #include "study/fit.hpp"
 
-namespace sweepgrid::study {
+namespace sweepgrid::study::study_fit_test {
 namespace {
 
 const std::vector<double> kX = {100, 200, 500, 1000, 3000, 10000, 30000};
@@ -74,4 +74,4 @@ TEST(MeasureInTurn, TakesEachContenderOnceARound) {
 }
 
 }  // namespace
-}  // namespace sweepgrid::study
+}  // namespace sweepgrid::study::study_fit_test

@@ -14,7 +14,7 @@
 #include "study/study_points.hpp"
 #include "study/study_progress.hpp"
 
-namespace sweepgrid::study {
+namespace sweepgrid::study::study_points_test {
 namespace {
 
 using nlohmann::json;
@@ -184,4 +184,4 @@ TEST(StudyOptions, NameTheFolderThatCannotBeWrittenInto) {
 }
 
 }  // namespace
-}  // namespace sweepgrid::study
+}  // namespace sweepgrid::study::study_points_test

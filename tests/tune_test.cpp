@@ -18,7 +18,7 @@
 #include "tune/exhaustive.hpp"
 #include "tune/tune_json.hpp"
 
-namespace sweepgrid::tune {
+namespace sweepgrid::tune::tune_test {
 namespace {
 
 using accuracy::TruthKind;
@@ -440,4 +440,4 @@ TEST(TuneJson, IsASetupWithTheReasons) {
 }
 
 }  // namespace
-}  // namespace sweepgrid::tune
+}  // namespace sweepgrid::tune::tune_test

@@ -11,7 +11,7 @@
 
 #include "op_script.hpp"
 
-namespace sweepgrid {
+namespace sweepgrid::witness_table_test {
 namespace {
 
 struct Finished {
@@ -178,4 +178,4 @@ TEST(WitnessTable, TheHashSpreadsOverUpperAndLowerBits) {
 }
 
 }  // namespace
-}  // namespace sweepgrid
+}  // namespace sweepgrid::witness_table_test

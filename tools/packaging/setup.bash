@@ -33,7 +33,7 @@ command -v npm >/dev/null || report_packages=(npm)
 readonly build_packages=(
   g++ cmake ninja-build libtbb-dev libhwy-dev libcli11-dev nlohmann-json3-dev libfmt-dev
   libboost-dev zlib1g-dev liblzma-dev libzstd-dev "${report_packages[@]}")
-readonly test_packages=(libgtest-dev libeigen3-dev librapidcheck-dev libbenchmark-dev)
+readonly test_packages=(libgtest-dev libeigen3-dev librapidcheck-dev libbenchmark-dev libbullet-dev)
 
 # install_packages <package>...: asks apt for those that are missing, and for nothing when none is.
 install_packages() {
@@ -65,8 +65,8 @@ install_packages() {
     >/dev/null
 }
 
-# build <preset> [<target>]: configures and builds.
+# build <preset> [<option>...]: configures, with options for cmake, and builds.
 build() {
-  cmake --preset "$1" --log-level=WARNING
-  cmake --build --preset "$1" -j "$(nproc)" ${2:+--target "$2"}
+  cmake --preset "$1" --log-level=WARNING "${@:2}"
+  cmake --build --preset "$1" -j "$(nproc)"
 }

@@ -12,7 +12,7 @@
 namespace sweepgrid::tune {
 namespace {
 
-constexpr double kMilliPerNano = 1e-6;
+constexpr double kMsPerNano = 1e-6;
 
 class Tuner {
  public:
@@ -133,7 +133,7 @@ class Tuner {
       if (axes == kept[0]) continue;
       const std::size_t left_out = 3 - axes[0] - axes[1];
       const double pairs = facts_.pairs_without[left_out];
-      const double more = kMilliPerNano * demand_.narrow_ns * (pairs - facts_.pairs);
+      const double more = kMsPerNano * demand_.narrow_ns * (pairs - facts_.pairs);
       if (more < now) {
         kept.push_back(axes);
       } else {

@@ -4,17 +4,12 @@
 
 #include <fmt/format.h>
 
+#include "study/figures/claimed_systems.hpp"
 #include "study/figures/figure_plans.hpp"
 #include "study/figures/paper_claims.hpp"
 
 namespace sweepgrid::study {
 namespace {
-
-const std::string kClassicCell = system_name::one_cell(CellKind::kClassic);
-const std::string kBatchCell = system_name::one_cell(CellKind::kBatch);
-const std::string kSegmentedCell = system_name::one_cell(CellKind::kSegmented);
-const std::string kClassicGrid = system_name::grid(CellKind::kClassic);
-const std::string kSegmentedGrid = system_name::grid(CellKind::kSegmented);
 
 constexpr double kEventsPerStep = 20;  // of figure::kInsertWork
 
@@ -25,9 +20,6 @@ std::optional<double> swaps_at_last(const Results& results, const std::string& s
   const auto entries = results.series(figure::kInsertWork, system);
   return entries.empty() ? std::nullopt : std::optional(swaps_per_event(*entries.back()));
 }
-
-// From here on a grid has cells with neighbours on all sides.
-constexpr double kLeastGrid = 8000;
 
 // The x whose time is least; absent when nothing was measured.
 std::optional<double> best_x(const Results& results, const std::string& figure, const std::string& system) {
@@ -93,13 +85,13 @@ void add_batch(std::vector<Claim>& claims, const Results& results) {
             .what = "swaps per event in the largest cell, exact count",
             .band = {0, 0},
             .why_more = "Endpoints are swapped into place."},
-           swaps_at_last(results, kBatchCell)));
+           swaps_at_last(results, claimed::kBatchCell)));
   claims.push_back(with({.where = "3.2.1",
                          .says = "Batch: the time of few events is at most linear in n",
                          .what = "exponent of time over n, 20 events",
                          .band = {.high = 1.1},
                          .why_more = "What is touched outgrows the caches; the counts above do not grow."},
-                        results.law(figure::kInsertWork, kBatchCell, median_seconds)));
+                        results.law(figure::kInsertWork, claimed::kBatchCell, median_seconds)));
   claims.push_back(
       with({.where = "3.2.1",
             .says = "Batch is like plain sweep and prune when few events occur",
@@ -107,7 +99,7 @@ void add_batch(std::vector<Claim>& claims, const Results& results) {
             .band = {0.67, 1.5},
             .why_less = "The pass of the batch kind does more per endpoint.",
             .why_more = "Even a few inserts cost the classic kind O(n) swaps each, which the merge saves."},
-           results.times_faster(figure::k9, 2, kClassicCell, kBatchCell)));
+           results.times_faster(figure::k9, 2, claimed::kClassicCell, claimed::kBatchCell)));
   claims.push_back(
       with({.where = "3.2.1",
             .says = "Batch smoothly becomes the sweeping plane when many events occur",
@@ -116,12 +108,12 @@ void add_batch(std::vector<Claim>& claims, const Results& results) {
             .why_less = "The plane sorts all endpoints by comparing, batch only looks for those that changed.",
             .why_more = "Erasing and inserting all takes two sets of endpoints through the merge, while the "
                         "plane sorts once."},
-           results.times_faster(figure::kReplaced, 1, kBatchCell, system_name::one_cell(CellKind::kPlane))));
+           results.times_faster(figure::kReplaced, 1, claimed::kBatchCell, system_name::one_cell(CellKind::kPlane))));
 }
 
 // What a box test takes in the smallest and the largest cell.
 std::string time_per_test_text(const Results& results) {
-  const auto entries = results.series(figure::kInsertWork, kSegmentedCell);
+  const auto entries = results.series(figure::kInsertWork, claimed::kSegmentedCell);
   if (entries.empty()) return "";
   const auto per_test = [](const Entry& entry) {
     return 1e9 * median_seconds(entry) / entry.per_step(entry.work.cells.box_tests);
@@ -132,7 +124,7 @@ std::string time_per_test_text(const Results& results) {
 }
 
 void add_segmented(std::vector<Claim>& claims, const Results& results) {
-  const auto tests = results.law(figure::kInsertWork, kSegmentedCell, tests_per_event);
+  const auto tests = results.law(figure::kInsertWork, claimed::kSegmentedCell, tests_per_event);
   const std::string tests_text =
       tests ? fmt::format(
                   "Box tests per event grow with the power {:.2f} of n: an inserted box must be tested against "
@@ -146,7 +138,7 @@ void add_segmented(std::vector<Claim>& claims, const Results& results) {
                          .what = "swaps per event in the largest cell, exact count",
                          .band = {0, 6 * 32},
                          .why_more = "Swaps leave their segments."},
-                        swaps_at_last(results, kSegmentedCell)));
+                        swaps_at_last(results, claimed::kSegmentedCell)));
   claims.push_back(with({.where = "3.2.2",
                          .says = "Segmented lists: O(k m log n) in all",
                          .what = "exponent of box tests per event over n, exact counts",
@@ -160,7 +152,7 @@ void add_segmented(std::vector<Claim>& claims, const Results& results) {
                          .band = {-0.1, 0.35},
                          .why_less = "Time falls with n.",
                          .why_more = tests_text + time_per_test_text(results)},
-                        results.law(figure::kInsertWork, kSegmentedCell, median_seconds)));
+                        results.law(figure::kInsertWork, claimed::kSegmentedCell, median_seconds)));
   claims.push_back(
       with({.where = "3.1",
             .says = "In a grid insertion and removal fall from O(k m n) to O(k m)",
@@ -168,7 +160,7 @@ void add_segmented(std::vector<Claim>& claims, const Results& results) {
             .band = {-0.2, 0.2},
             .why_less = "Larger scenes have fewer objects per cell.",
             .why_more = "Cells of small scenes hold fewer objects than those of large ones."},
-           results.law(figure::kInsertWork, kClassicGrid, swaps_per_event, kLeastGrid)));
+           results.law(figure::kInsertWork, claimed::kClassicGrid, swaps_per_event, claimed::kLeastGrid)));
   claims.push_back(
       with({.where = "3.1, 3.2.2",
             .says = "In a grid the tests of segmented lists do not grow with n either",
@@ -176,7 +168,7 @@ void add_segmented(std::vector<Claim>& claims, const Results& results) {
             .band = {-0.2, 0.2},
             .why_less = "Larger scenes have fewer objects per cell.",
             .why_more = "Cells of small scenes hold fewer objects than those of large ones."},
-           results.law(figure::kInsertWork, kSegmentedGrid, tests_per_event, kLeastGrid)));
+           results.law(figure::kInsertWork, claimed::kSegmentedGrid, tests_per_event, claimed::kLeastGrid)));
 }
 
 void add_segment_size(std::vector<Claim>& claims, const Results& results) {
@@ -206,7 +198,7 @@ double per_update_and_event(const Entry& entry) {
 }
 
 void add_events(std::vector<Claim>& claims, const Results& results) {
-  const auto last = results.series(figure::k11, kSegmentedGrid);
+  const auto last = results.series(figure::k11, claimed::kSegmentedGrid);
   std::optional<double> changes;
   if (!last.empty()) {
     for (const Results::Played& played : results.all()) {
@@ -227,9 +219,9 @@ void add_events(std::vector<Claim>& claims, const Results& results) {
                          .band = {-0.1, 0.1},
                          .why_less = "Deltas grow more slowly than updates and events.",
                          .why_more = "Deltas grow faster than updates and events: pairs in several cells."},
-                        results.law(figure::k11, kSegmentedGrid, per_update_and_event)));
+                        results.law(figure::k11, claimed::kSegmentedGrid, per_update_and_event)));
   std::optional<double> quiet;
-  for (const Entry* entry : results.series(figure::kQuiet, kSegmentedGrid)) {
+  for (const Entry* entry : results.series(figure::kQuiet, claimed::kSegmentedGrid)) {
     const Work& work = entry->work;
     quiet = static_cast<double>(work.cells.swaps + work.cells.box_tests + work.cells.deltas + work.cells_drained);
   }

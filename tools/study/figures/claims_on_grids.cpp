@@ -4,18 +4,16 @@
 #include <fmt/format.h>
 
 #include "study/figures/batch_and_segmented.hpp"
+#include "study/figures/claimed_systems.hpp"
 #include "study/figures/figure_plans.hpp"
 #include "study/figures/paper_claims.hpp"
 
 namespace sweepgrid::study {
 namespace {
 
-const std::string kBatchGrid = system_name::grid(CellKind::kBatch);
-const std::string kSegmentedGrid = system_name::grid(CellKind::kSegmented);
-
-void add_presorted(std::vector<Claim>& claims, const Results& results) {
+void add_presorted_grids(std::vector<Claim>& claims, const Results& results) {
   for (const char* const system : {system_name::kPresortedGrid, system_name::kAutoGrid}) {
-    const auto worst = presorted_at_worst(results, figure::k10, kBatchGrid, kSegmentedGrid, system);
+    const auto worst = presorted_at_worst(results, figure::k10, claimed::kBatchGrid, claimed::kSegmentedGrid, system);
     claims.push_back(
         with({.where = "4.2",
               .says = "Presorting could improve the slope in the grid as well",
@@ -27,8 +25,9 @@ void add_presorted(std::vector<Claim>& claims, const Results& results) {
 }
 
 void add_figure_10(std::vector<Claim>& claims, const Results& results) {
-  const std::string costs = cost_text(results, figure::k10, kBatchGrid, kSegmentedGrid, 0, 4000, "event") + " " +
-                            sorts_text(results, figure::k10, 0);
+  const std::string costs =
+      cost_text(results, figure::k10, claimed::kBatchGrid, claimed::kSegmentedGrid, 0, 4000, "event") + " " +
+      sorts_text(results, figure::k10, 0);
   claims.push_back(with({.where = "4.2, Figure 10",
                          .says = "Grid of 100 000 objects, 10 000 moving: the crossover is at 4000 events",
                          .what = "events from which on segmented takes longer than batch",
@@ -36,21 +35,21 @@ void add_figure_10(std::vector<Claim>& claims, const Results& results) {
                          .why_less = costs,
                          .why_more = costs,
                          .digits = 0},
-                        results.crossing(figure::k10, kSegmentedGrid, kBatchGrid)));
-  claims.push_back(with(
-      {.where = "4.2, Figure 10",
-       .says = "Batch slows down significantly with the first events, and less with further ones",
-       .what = "time per event, first thousand / from 4000 to 8000",
-       .band = {.low = 1.2},
-       .why_less = "The first events have little to add. " + sorts_text(results, figure::k10, 0)},
-      quotient(slope(results, figure::k10, kBatchGrid, 0, 1000), slope(results, figure::k10, kBatchGrid, 4000, 8000))));
+                        results.crossing(figure::k10, claimed::kSegmentedGrid, claimed::kBatchGrid)));
+  claims.push_back(with({.where = "4.2, Figure 10",
+                         .says = "Batch slows down significantly with the first events, and less with further ones",
+                         .what = "time per event, first thousand / from 4000 to 8000",
+                         .band = {.low = 1.2},
+                         .why_less = "The first events have little to add. " + sorts_text(results, figure::k10, 0)},
+                        quotient(slope(results, figure::k10, claimed::kBatchGrid, 0, 1000),
+                                 slope(results, figure::k10, claimed::kBatchGrid, 4000, 8000))));
   claims.push_back(with({.where = "4.2, Figure 10",
                          .says = "Segmented lists are much more efficient at few events",
                          .what = "batch / segmented, no events but the moving objects' own",
                          .band = {.low = 1.3},
                          .why_less = costs + " A pass over a cell of 300 objects is short."},
-                        results.times_faster(figure::k10, 0, kBatchGrid, kSegmentedGrid)));
-  add_presorted(claims, results);
+                        results.times_faster(figure::k10, 0, claimed::kBatchGrid, claimed::kSegmentedGrid)));
+  add_presorted_grids(claims, results);
 }
 
 std::optional<double> ratio_of_times(const Results& results, const char* figure, const char* system, double x,
@@ -83,7 +82,7 @@ void add_octree(std::vector<Claim>& claims, const Results& results) {
                            .what = what,
                            .band = {.low = 1},
                            .why_less = why_faster(figure, x)},
-                          results.times_faster(figure, x, system_name::kOctree, kSegmentedGrid)));
+                          results.times_faster(figure, x, system_name::kOctree, claimed::kSegmentedGrid)));
   };
   octree_slower(figure::k11, 200000, "The octree is generally slower than a grid of sweep and prune",
                 "octree / segmented in a grid, Figure 11, 200 000 objects");
@@ -96,7 +95,7 @@ void add_octree(std::vector<Claim>& claims, const Results& results) {
                          .what = "segmented in a grid / octree, all moving, a width per step",
                          .band = {.low = 1},
                          .why_less = "Even then the grid is faster."},
-                        results.times_faster(figure::kSpeed, 1, kSegmentedGrid, system_name::kOctree)));
+                        results.times_faster(figure::kSpeed, 1, claimed::kSegmentedGrid, system_name::kOctree)));
 }
 
 void add_figure_11(std::vector<Claim>& claims, const Results& results) {
@@ -117,22 +116,23 @@ void add_figure_11(std::vector<Claim>& claims, const Results& results) {
       {200000, "The same: almost twice as fast at 200 000 objects", {1.6, 2.2}}};
   for (const Part& part : parts) {
     const std::string why = sorts_text(results, figure::k11, part.objects) + overtaken_text;
-    claims.push_back(with({.where = "4.2, Figure 11",
-                           .says = part.says,
-                           .what = fmt::format("batch / segmented in a grid, {} objects", part.objects),
-                           .band = part.band,
-                           .why_less = why,
-                           .why_more = why},
-                          results.times_faster(figure::k11, part.objects, kBatchGrid, kSegmentedGrid)));
+    claims.push_back(
+        with({.where = "4.2, Figure 11",
+              .says = part.says,
+              .what = fmt::format("batch / segmented in a grid, {} objects", part.objects),
+              .band = part.band,
+              .why_less = why,
+              .why_more = why},
+             results.times_faster(figure::k11, part.objects, claimed::kBatchGrid, claimed::kSegmentedGrid)));
   }
 }
 
 void add_clumped(std::vector<Claim>& claims, const Results& results) {
-  const auto uniform = results.times_faster(figure::kClumped, 0.1, kBatchGrid + system_name::kUniformSuffix,
-                                            kSegmentedGrid + system_name::kUniformSuffix);
-  const auto clumped = results.times_faster(figure::kClumped, 0.1, kBatchGrid, kSegmentedGrid);
-  const auto resting = results.times_faster(figure::kClumped, 0.01, kBatchGrid + system_name::kUniformSuffix,
-                                            kSegmentedGrid + system_name::kUniformSuffix);
+  const auto uniform = results.times_faster(figure::kClumped, 0.1, claimed::kBatchGrid + system_name::kUniformSuffix,
+                                            claimed::kSegmentedGrid + system_name::kUniformSuffix);
+  const auto clumped = results.times_faster(figure::kClumped, 0.1, claimed::kBatchGrid, claimed::kSegmentedGrid);
+  const auto resting = results.times_faster(figure::kClumped, 0.01, claimed::kBatchGrid + system_name::kUniformSuffix,
+                                            claimed::kSegmentedGrid + system_name::kUniformSuffix);
   const auto median = [](const std::optional<Spread>& spread) {
     return spread ? std::optional(spread->median) : std::nullopt;
   };

@@ -3,19 +3,14 @@
 
 #include <fmt/format.h>
 
+#include "study/figures/claimed_systems.hpp"
 #include "study/figures/figure_plans.hpp"
 #include "study/figures/paper_claims.hpp"
 
 namespace sweepgrid::study {
 namespace {
 
-const std::string kClassicCell = system_name::one_cell(CellKind::kClassic);
-const std::string kClassicGrid = system_name::grid(CellKind::kClassic);
-
-// From here on a grid has cells with neighbours on all sides.
-constexpr double kLeastGrid = 8000;
-
-double swaps_per_step(const Entry& entry) { return entry.per_step(entry.work.cells.swaps); }
+double plain_swaps_per_step(const Entry& entry) { return entry.per_step(entry.work.cells.swaps); }
 double swaps_per_update(const Entry& entry) {
   return static_cast<double>(entry.work.cells.swaps) / static_cast<double>(entry.work.updates);
 }
@@ -26,7 +21,7 @@ std::string exponent_text(const std::optional<PowerLaw>& law) {
 
 // The power between the two largest sizes; empty when there are none.
 std::string late_power(const Results& results) {
-  const auto entries = results.series(figure::k2, kClassicCell);
+  const auto entries = results.series(figure::k2, claimed::kClassicCell);
   if (entries.size() < 2) return "";
   const Entry& last = *entries.back();
   const Entry& before = *entries[entries.size() - 2];
@@ -39,8 +34,8 @@ std::string swaps_beside(const std::optional<PowerLaw>& swaps) {
 }
 
 void add_growth(std::vector<Claim>& claims, const Results& results) {
-  const auto time = results.law(figure::k2, kClassicCell, median_seconds);
-  const auto swaps = results.law(figure::k2, kClassicCell, swaps_per_step);
+  const auto time = results.law(figure::k2, claimed::kClassicCell, median_seconds);
+  const auto swaps = results.law(figure::k2, claimed::kClassicCell, plain_swaps_per_step);
   claims.push_back(with(
       {.where = "2.1, Figure 2",
        .says = "Time of plain sweep and prune, all moving, grows with the power 1.76 of n, close to 5/3",
@@ -64,7 +59,7 @@ void add_growth(std::vector<Claim>& claims, const Results& results) {
                          .band = {1.45, 1.55},
                          .why_less = "Small scenes have relatively more objects that turn back at the walls.",
                          .why_more = "The scene is denser on its axes than the estimate assumes."},
-                        results.law(figure::kFlat, kClassicCell, swaps_per_step)));
+                        results.law(figure::kFlat, claimed::kClassicCell, plain_swaps_per_step)));
 }
 
 void add_local_sort(std::vector<Claim>& claims, const Results& results) {
@@ -77,7 +72,7 @@ void add_local_sort(std::vector<Claim>& claims, const Results& results) {
            results.times_faster(figure::kSorts, 3000, system_name::kFewMovingGlobal, system_name::kFewMovingLocal)));
 }
 
-void add_events(std::vector<Claim>& claims, const Results& results) {
+void add_plain_events(std::vector<Claim>& claims, const Results& results) {
   claims.push_back(
       with({.where = "2.1",
             .says = "An insert or erase in plain sweep and prune takes O(n) swaps on each axis (the term mnk)",
@@ -85,7 +80,7 @@ void add_events(std::vector<Claim>& claims, const Results& results) {
             .band = {0.9, 1.1},
             .why_less = "Endpoints enter the lists closer to their places.",
             .why_more = "Swaps of other objects are mixed in."},
-           results.law(figure::kInsertWork, kClassicCell, swaps_per_step)));
+           results.law(figure::kInsertWork, claimed::kClassicCell, plain_swaps_per_step)));
 }
 
 void add_subdivision(std::vector<Claim>& claims, const Results& results) {
@@ -97,7 +92,7 @@ void add_subdivision(std::vector<Claim>& claims, const Results& results) {
             .why_less = "Larger scenes have relatively fewer cells at the walls.",
             .why_more = "In small scenes cells cannot be as wide as wanted, and objects at the walls are in "
                         "fewer cells; this fades as the scene grows."},
-           results.law(figure::k2, kClassicGrid, swaps_per_update, kLeastGrid)));
+           results.law(figure::k2, claimed::kClassicGrid, swaps_per_update, claimed::kLeastGrid)));
   claims.push_back(with({.where = "3.1",
                          .says = "So the time of a grid grows linearly",
                          .what = "exponent of time, from 8000 objects on",
@@ -105,7 +100,7 @@ void add_subdivision(std::vector<Claim>& claims, const Results& results) {
                          .why_less = "Fixed costs of a step weigh on small scenes.",
                          .why_more = "Swaps do not grow faster (the line above); what is touched per step outgrows the "
                                      "caches."},
-                        results.law(figure::k2, kClassicGrid, median_seconds, kLeastGrid)));
+                        results.law(figure::k2, claimed::kClassicGrid, median_seconds, claimed::kLeastGrid)));
   claims.push_back(with({.where = "1",
                          .says = "Subdivision is an order of magnitude or more faster in large environments",
                          .what = "one cell / grid, batch, at the largest scene that one cell was given",
@@ -133,7 +128,7 @@ std::vector<Claim> claims_on_growth(const Results& results) {
   std::vector<Claim> claims;
   add_local_sort(claims, results);
   add_growth(claims, results);
-  add_events(claims, results);
+  add_plain_events(claims, results);
   add_subdivision(claims, results);
   add_others(claims, results);
   return claims;

@@ -5,16 +5,12 @@
 #include <fmt/format.h>
 
 #include "study/figures/batch_and_segmented.hpp"
+#include "study/figures/claimed_systems.hpp"
 #include "study/figures/figure_plans.hpp"
 #include "study/figures/paper_claims.hpp"
 
 namespace sweepgrid::study {
 namespace {
-
-const std::string kBatchCell = system_name::one_cell(CellKind::kBatch);
-const std::string kSegmentedCell = system_name::one_cell(CellKind::kSegmented);
-const std::string kBatchGrid = system_name::grid(CellKind::kBatch);
-const std::string kSegmentedGrid = system_name::grid(CellKind::kSegmented);
 
 std::optional<double> global_sorts_per_step(const Results& results, const std::string& system) {
   const Entry* entry = results.find(figure::k8, system, 150);
@@ -38,13 +34,13 @@ void add_correctness(std::vector<Claim>& claims, const Results& results) {
                          .what = "global sorts per step, one insert and one erase, 5 % of 3000 moving, exact count",
                          .band = {1, 1},
                          .why_less = "Few events are applied without a pass."},
-                        global_sorts_per_step(results, kBatchCell)));
+                        global_sorts_per_step(results, claimed::kBatchCell)));
   claims.push_back(with({.where = "4",
                          .says = "A segmented cell sorts globally only above a threshold of all operations",
                          .what = "the same for a segmented cell",
                          .band = {0, 0},
                          .why_more = "The threshold is below 5 % here."},
-                        global_sorts_per_step(results, kSegmentedCell)));
+                        global_sorts_per_step(results, claimed::kSegmentedCell)));
 }
 
 void add_implementation(std::vector<Claim>& claims, const Results& results) {
@@ -79,7 +75,8 @@ struct RatioClaim {
 };
 
 void add_figure_8(std::vector<Claim>& claims, const Results& results) {
-  const std::string costs = cost_text(results, figure::k8, kBatchCell, kSegmentedCell, 30, 600, "moving object");
+  const std::string costs =
+      cost_text(results, figure::k8, claimed::kBatchCell, claimed::kSegmentedCell, 30, 600, "moving object");
   const RatioClaim parts[] = {
       {600, "One insert and one erase, 20 % moving: segmented lists are 60 % faster than batch", {1.3, 1.95}},
       {150, "One insert and one erase, 5 % moving: three times as fast", {2.4, 3.75}}};
@@ -90,7 +87,7 @@ void add_figure_8(std::vector<Claim>& claims, const Results& results) {
                            .band = part.band,
                            .why_less = costs + kCheapPass,
                            .why_more = costs + kDearPass},
-                          results.times_faster(figure::k8, part.x, kBatchCell, kSegmentedCell)));
+                          results.times_faster(figure::k8, part.x, claimed::kBatchCell, claimed::kSegmentedCell)));
   }
   claims.push_back(with({.where = "4.1, Figure 8",
                          .says = "One insert and one erase, most moving: both are about as fast",
@@ -98,12 +95,12 @@ void add_figure_8(std::vector<Claim>& claims, const Results& results) {
                          .band = {0.8, 1.25},
                          .why_less = "Both sort globally, and that takes longer over segments than over one array.",
                          .why_more = "Both sort globally, and that takes longer over one array than over segments."},
-                        results.times_faster(figure::k8, 3000, kBatchCell, kSegmentedCell)));
+                        results.times_faster(figure::k8, 3000, claimed::kBatchCell, claimed::kSegmentedCell)));
 }
 
 void add_presorted(std::vector<Claim>& claims, const Results& results) {
   for (const char* const system : {system_name::kPresortedCell, system_name::kAutoCell}) {
-    const auto worst = presorted_at_worst(results, figure::k9, kBatchCell, kSegmentedCell, system);
+    const auto worst = presorted_at_worst(results, figure::k9, claimed::kBatchCell, claimed::kSegmentedCell, system);
     claims.push_back(
         with({.where = "4.1",
               .says = "Presorting events and integrating them segment by segment should pass smoothly from the best of "
@@ -116,7 +113,8 @@ void add_presorted(std::vector<Claim>& claims, const Results& results) {
 }
 
 void add_figure_9(std::vector<Claim>& claims, const Results& results) {
-  const std::string costs = cost_text(results, figure::k9, kBatchCell, kSegmentedCell, 2, 80, "event");
+  const std::string costs =
+      cost_text(results, figure::k9, claimed::kBatchCell, claimed::kSegmentedCell, 2, 80, "event");
   const RatioClaim parts[] = {
       {2, "One insert and one erase, 150 of 3000 moving: almost three times as fast as batch", {2.2, 3.3}},
       {20, "Ten inserts and ten erases: still 90 % faster", {1.5, 2.3}}};
@@ -127,7 +125,7 @@ void add_figure_9(std::vector<Claim>& claims, const Results& results) {
                            .band = part.band,
                            .why_less = costs + kCheapPass,
                            .why_more = costs + kDearPass},
-                          results.times_faster(figure::k9, part.x, kBatchCell, kSegmentedCell)));
+                          results.times_faster(figure::k9, part.x, claimed::kBatchCell, claimed::kSegmentedCell)));
   }
   claims.push_back(with({.where = "4.1, Figure 9",
                          .says = "The cut-off is slightly less than 80 events",
@@ -136,14 +134,14 @@ void add_figure_9(std::vector<Claim>& claims, const Results& results) {
                          .why_less = costs,
                          .why_more = costs,
                          .digits = 0},
-                        results.crossing(figure::k9, kSegmentedCell, kBatchCell)));
-  claims.push_back(with(
-      {.where = "4.1, Figure 9",
-       .says = "A further event costs batch less than it costs segmented lists",
-       .what = "segmented / batch, time per further event from 40 to 200 events",
-       .band = {.low = 1},
-       .why_less = "An event costs batch more: all that its sweep sets hold is tested."},
-      quotient(slope(results, figure::k9, kSegmentedCell, 40, 200), slope(results, figure::k9, kBatchCell, 40, 200))));
+                        results.crossing(figure::k9, claimed::kSegmentedCell, claimed::kBatchCell)));
+  claims.push_back(with({.where = "4.1, Figure 9",
+                         .says = "A further event costs batch less than it costs segmented lists",
+                         .what = "segmented / batch, time per further event from 40 to 200 events",
+                         .band = {.low = 1},
+                         .why_less = "An event costs batch more: all that its sweep sets hold is tested."},
+                        quotient(slope(results, figure::k9, claimed::kSegmentedCell, 40, 200),
+                                 slope(results, figure::k9, claimed::kBatchCell, 40, 200))));
   add_presorted(claims, results);
 }
 
@@ -155,10 +153,10 @@ void add_conclusions(std::vector<Claim>& claims, const Results& results) {
       if (ratio) most = std::max(most.value_or(0), ratio->median);
     }
   };
-  consider(figure::k8, kBatchCell, kSegmentedCell);
-  consider(figure::k9, kBatchCell, kSegmentedCell);
-  consider(figure::k10, kBatchGrid, kSegmentedGrid);
-  consider(figure::k11, kBatchGrid, kSegmentedGrid);
+  consider(figure::k8, claimed::kBatchCell, claimed::kSegmentedCell);
+  consider(figure::k9, claimed::kBatchCell, claimed::kSegmentedCell);
+  consider(figure::k10, claimed::kBatchGrid, claimed::kSegmentedGrid);
+  consider(figure::k11, claimed::kBatchGrid, claimed::kSegmentedGrid);
   // The most of one figure says nothing of the others.
   for (const char* const figure : {figure::k8, figure::k9, figure::k10, figure::k11}) {
     if (results.systems(figure).empty()) most.reset();

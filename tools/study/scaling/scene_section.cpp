@@ -12,12 +12,12 @@
 namespace sweepgrid::study {
 namespace {
 
-constexpr double kMilli = 1e3;
-constexpr double kPercent = 100;
+constexpr double kMsPerSecond = 1e3;
+constexpr double kPercentOfOne = 100;
 
-Cell number(double value, int digits) { return {fmt::format("{:.{}f}", value, digits), value}; }
+Cell number_cell(double value, int digits) { return {fmt::format("{:.{}f}", value, digits), value}; }
 Cell whole(double value) { return {fmt::format("{:.0f}", value), value}; }
-Cell text(std::string value) { return {std::move(value), std::nullopt}; }
+Cell text_cell(std::string value) { return {std::move(value), std::nullopt}; }
 
 std::string id(const char* what, std::size_t index) { return fmt::format("scaling-{}-{}", what, index + 1); }
 
@@ -91,7 +91,7 @@ LineChart stages_chart(const SceneFindings& scene, std::size_t index) {
       }
       if (stage.wall <= 0) continue;
       series->points.push_back({static_cast<double>(workers),
-                                kMilli * stage.wall / static_cast<double>(scene.steps),
+                                kMsPerSecond * stage.wall / static_cast<double>(scene.steps),
                                 {},
                                 {},
                                 fmt::format("{:.0f} tasks", stage.tasks)});
@@ -117,16 +117,17 @@ Table measured_table(const SceneFindings& scene, std::size_t index) {
     const double speedup = scene.measured.front().seconds / run.seconds;
     const auto [least, most] = std::minmax_element(run.round_seconds.begin(), run.round_seconds.end());
     const double p = run.threads;
-    std::vector<Cell> row = {whole(p),
-                             number(kMilli * run.seconds / steps, 3),
-                             text(fmt::format("{:.3f} to {:.3f}", kMilli * *least / steps, kMilli * *most / steps)),
-                             number(speedup, 2),
-                             number(kPercent * speedup / p, 0),
-                             number(run.balance(), 3),
-                             run.threads == 1 ? text("") : number(kPercent * (p / speedup - 1) / (p - 1), 2),
-                             number(kPercent * run.predicted.serial / run.predicted.work, 2)};
+    std::vector<Cell> row = {
+        whole(p),
+        number_cell(kMsPerSecond * run.seconds / steps, 3),
+        text_cell(fmt::format("{:.3f} to {:.3f}", kMsPerSecond * *least / steps, kMsPerSecond * *most / steps)),
+        number_cell(speedup, 2),
+        number_cell(kPercentOfOne * speedup / p, 0),
+        number_cell(run.balance(), 3),
+        run.threads == 1 ? text_cell("") : number_cell(kPercentOfOne * (p / speedup - 1) / (p - 1), 2),
+        number_cell(kPercentOfOne * run.predicted.serial / run.predicted.work, 2)};
     for (std::size_t part = 0; part <= scene.stages.size(); ++part) {
-      row.push_back(number(kMilli * run.part_seconds[part] / steps, 3));
+      row.push_back(number_cell(kMsPerSecond * run.part_seconds[part] / steps, 3));
     }
     table.rows.push_back(std::move(row));
   }
@@ -148,11 +149,12 @@ Table predicted_table(const SceneFindings& scene, std::size_t index) {
   const auto steps = static_cast<double>(scene.steps);
   for (const auto& [workers, prediction] : scene.predicted) {
     std::vector<Cell> row = {whole(workers)};
-    for (const Forecast& forecast : kForecasts) row.push_back(number(scene.predicted_speedup(workers, forecast.id), 2));
-    row.push_back(number(kPercent * scene.predicted_speedup(workers, kForecasts[0].id) / workers, 0));
-    row.push_back(number(prediction.work / prediction.span, 1));
-    row.push_back(number(kMilli * prediction.work / steps, 3));
-    row.push_back(number(kPercent * prediction.serial / prediction.work, 2));
+    for (const Forecast& forecast : kForecasts)
+      row.push_back(number_cell(scene.predicted_speedup(workers, forecast.id), 2));
+    row.push_back(number_cell(kPercentOfOne * scene.predicted_speedup(workers, kForecasts[0].id) / workers, 0));
+    row.push_back(number_cell(prediction.work / prediction.span, 1));
+    row.push_back(number_cell(kMsPerSecond * prediction.work / steps, 3));
+    row.push_back(number_cell(kPercentOfOne * prediction.serial / prediction.work, 2));
     double tasks = 0;
     for (const StageForecast& stage : prediction.stages) tasks += stage.tasks;
     row.push_back(whole(tasks));
@@ -184,11 +186,13 @@ Table loss_table(const SceneFindings& scene, std::size_t index) {
     const double all = workers * stage.wall;
     const double done = stage.work + stage.serial;
     const double serial = (workers - 1) * stage.serial;
-    table.rows.push_back(
-        {text(stage.name), whole(stage.tasks), number(kMilli * stage.longest / static_cast<double>(scene.steps), 4),
-         number(kPercent * base / whole_time, 2), number(kPercent * (done - base) / whole_time, 2),
-         number(kPercent * serial / whole_time, 2), number(kPercent * (all - serial - done) / whole_time, 2),
-         number(kPercent * all / whole_time, 2)});
+    table.rows.push_back({text_cell(stage.name), whole(stage.tasks),
+                          number_cell(kMsPerSecond * stage.longest / static_cast<double>(scene.steps), 4),
+                          number_cell(kPercentOfOne * base / whole_time, 2),
+                          number_cell(kPercentOfOne * (done - base) / whole_time, 2),
+                          number_cell(kPercentOfOne * serial / whole_time, 2),
+                          number_cell(kPercentOfOne * (all - serial - done) / whole_time, 2),
+                          number_cell(kPercentOfOne * all / whole_time, 2)});
   }
   return table;
 }
@@ -208,7 +212,7 @@ LineChart what_if_chart(const SceneFindings& scene, std::size_t index, const cha
       const double seconds = point.predicted.seconds(forecast.id);
       const double speedup = scene.predicted.at(1).seconds(forecast.id) / seconds;
       series.points.push_back({point.value,
-                               kMilli * seconds / static_cast<double>(scene.steps),
+                               kMsPerSecond * seconds / static_cast<double>(scene.steps),
                                {},
                                {},
                                fmt::format("speed-up {:.1f} against one worker as it comes", speedup)});
