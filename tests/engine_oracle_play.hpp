@@ -28,7 +28,8 @@ std::string play_matrix(const SceneRegime& regime, std::size_t turn) {
         ++turn;
         // Races are the same for all numbers: half of each, so that a kind meets a reduction in two dimensions or in
         // three.
-        const bool left_out = k >= 3 ? turn % 4 != 0 : kThreadSanitized && (turn + k) % 2 != 0;
+        bool left_out = k >= 3 ? turn % 4 != 0 : kThreadSanitized && (turn + k) % 2 != 0;
+        if (k < 3 && !kThreadSanitized && !plays_all()) left_out = (turn + k + first_turn(regime.name)) % 2 != 0;
         if (left_out) continue;
         std::size_t g = (turn + static_cast<std::size_t>(regime.steps)) % kGrids.size();
         while (!kGrids[g].suits(regime.place, kReductions[r])) g = (g + 1) % kGrids.size();

@@ -44,7 +44,7 @@ template <class Scalar, int Dim>
 std::string play_settings(const SceneRegime& regime, std::size_t turn) {
   for (const Setting& setting : settings()) {
     ++turn;
-    if (kSanitized && turn % 3 != 0) continue;
+    if ((turn + first_turn(regime.name)) % ((kSanitized ? 3 : 1) * (plays_all() ? 1 : 3)) != 0) continue;
     const int threads = turn % 4 == 0 ? 3 : 1;
     const std::size_t k = turn % kKinds.size();
     const std::size_t r = turn / kKinds.size() % 2;
@@ -83,10 +83,10 @@ class EnvelopeScripts : public ::testing::TestWithParam<Regime> {};
 template <class Scalar, int Dim>
 std::string play_script(const Regime& regime, std::size_t turn) {
   // Coordinates are nothing to the thread sanitizer, and scenes are played to it as well.
-  constexpr std::size_t kStride = kThreadSanitized ? 9 : kSanitized ? 3 : 1;
+  const std::size_t stride = (kThreadSanitized ? 9 : kSanitized ? 3 : 1) * (plays_all() ? 1 : 3);
   for (const Setting& setting : settings()) {
     ++turn;
-    if (turn % kStride != 0) continue;
+    if ((turn + first_turn(regime.name)) % stride != 0) continue;
     Config config;
     config.cell.kind = kKinds[turn % kKinds.size()];
     config.cell_population = turn % 2 == 0 ? 2 : 20;

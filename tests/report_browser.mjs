@@ -54,8 +54,10 @@ const painted = (page) => page.evaluate(() =>
 const picture = (page, name) => page.screenshot({path: join(folder, `${name}.png`), fullPage: true});
 const tests = [];
 const test = (name, width, run, scheme) => tests.push({name, width, run, scheme});
+// Opening a page takes most of the time, so those that only look, or leave all as it was, share one.
+const look = (name, run) => tests.push({name, width: 1280, run, shared: true});
 
-test("every chart has marks", 1280, async (page) => {
+look("every chart has marks", async (page) => {
   assert.equal(await page.title(), report.title);
   assert.equal(await page.locator("h1").textContent(), report.title);
   for (const chart of all("charts")) {
@@ -79,7 +81,7 @@ test("every chart has marks", 1280, async (page) => {
   await picture(page, "desktop");
 });
 
-test("error bars reach from the least to the most", 1280, async (page) => {
+look("error bars reach from the least to the most", async (page) => {
   const lengths = await page.locator('#speed-up .chart svg path[stroke-width="1.5"]').evaluateAll((paths) =>
     paths.map((path) => path.getBBox()).filter(({width}) => width === 0).map(({height}) => height));
   // Three, of one relative spread: on an axis of logarithms they are equally long.
@@ -87,14 +89,14 @@ test("error bars reach from the least to the most", 1280, async (page) => {
   for (const length of lengths) assert.ok(length > 3 && Math.abs(length - lengths[0]) < 0.1, `lengths ${lengths}`);
 });
 
-test("simulated series are dashed and say so", 1280, async (page) => {
+look("simulated series are dashed and say so", async (page) => {
   const legend = page.locator("#speed-up .legend button");
   assert.deepEqual(await legend.allTextContents(),
     ["uniform 1e6", "work stealing (simulated)", "static ranges (simulated)", "ideal"]);
   assert.ok(await page.locator('#speed-up .chart svg path[stroke-dasharray^="6,4"]').count() >= 2);
 });
 
-test("legends switch series off and on, with the keyboard too", 1280, async (page) => {
+look("legends switch series off and on, with the keyboard too", async (page) => {
   for (const {id} of [...all("charts").slice(0, 2), all("timelines")[0]]) {
     const before = await marksOf(page, id);
     const button = page.locator(`#${id} .legend button`).nth(1);
@@ -119,7 +121,7 @@ test("a series that is off stays off when colours change", 1280, async (page) =>
   assert.equal(await marksOf(page, "growth"), before);
 });
 
-test("tooltips tell the numbers", 1280, async (page) => {
+look("tooltips tell the numbers", async (page) => {
   await page.locator("#growth .chart").scrollIntoViewIfNeeded();
   const box = await page.locator("#growth .chart").boundingBox();
   await page.mouse.move(box.x + box.width * 0.6, box.y + box.height * 0.5);
@@ -164,20 +166,20 @@ test("timelines zoom", 1280, async (page) => {
   await page.waitForFunction((most) => document.querySelectorAll("#step .chart svg path").length < most, before * 0.8);
 });
 
-test("numbers behind a chart are there as a table", 1280, async (page) => {
+look("numbers behind a chart are there as a table", async (page) => {
   await page.locator("#speed-up summary").click();
   await page.locator("#speed-up tbody tr").first().waitFor();
   const points = all("charts")[0].series.flatMap(({points}) => points);
   assert.equal(await page.locator("#speed-up tbody tr").count(), points.length);
 });
 
-test("the JSON can be saved", 1280, async (page) => {
+look("the JSON can be saved", async (page) => {
   const [download] = await Promise.all([page.waitForEvent("download"), page.locator("#save").click()]);
   assert.equal(download.suggestedFilename(), "study-sample.json");
   assert.deepEqual(JSON.parse(readFileSync(await download.path(), "utf8")), report);
 });
 
-test("hostile texts are texts", 1280, async (page) => {
+look("hostile texts are texts", async (page) => {
   assert.equal(await page.locator("main b").count(), 0);
   assert.ok((await page.locator("#gaps h3").textContent()).includes("</script><b onclick"));
 });
@@ -220,8 +222,10 @@ test("prints light, within the paper", 1280, async (page) => {
 }, "dark");
 
 let failed = 0;
-for (const {name, width, run, scheme} of tests) {
-  const page = await open(width, 900, scheme);
+let sharedPage;
+for (const {name, width, run, scheme, shared} of tests) {
+  const page = shared && sharedPage ? sharedPage : await open(width, 900, scheme);
+  if (shared) sharedPage = page;
   try {
     await run(page);
     assert.deepEqual(page.complaints, []);
@@ -230,7 +234,7 @@ for (const {name, width, run, scheme} of tests) {
     ++failed;
     console.error(`FAILED: ${name}\n${error.stack}`);
   }
-  await page.context().close();
+  if (!shared) await page.context().close();
 }
 await browser.close();
 console.log(`${tests.length - failed} passed, ${failed} failed; pictures: ${folder}`);
