@@ -31,8 +31,9 @@ inline constexpr bool kSanitized = true;
 inline constexpr bool kSanitized = kThreadSanitized;
 #endif
 
-/// Whether everything is played: where SWEEPGRID_LONG is set, as by tools/check --nightly. Else a part of what is played
-/// again and again, chosen such that every kind of cell, type, dimension, reduction and number of threads is in it.
+/// Whether everything is played: where SWEEPGRID_LONG is set, as by tools/check --nightly. Else a part of what is
+/// played again and again, chosen such that every kind of cell, type, dimension, reduction and number of threads is in
+/// it.
 inline bool plays_all() { return std::getenv("SWEEPGRID_LONG") != nullptr; }
 
 /// Where a regime begins to count, so that each plays another part.
