@@ -64,7 +64,7 @@ Prediction predict(std::vector<WorkGraph> steps, int workers, const MachineCosts
   return result;
 }
 
-void to_json(nlohmann::json& json, const Prediction& prediction) {
+void to_json(nlohmann::json& out, const Prediction& prediction) {
   nlohmann::json stages = nlohmann::json::array();
   for (const StageForecast& stage : prediction.stages) {
     stages.push_back({{"name", stage.name},
@@ -74,18 +74,18 @@ void to_json(nlohmann::json& json, const Prediction& prediction) {
                       {"longest_s", stage.longest},
                       {"tasks", stage.tasks}});
   }
-  json = {{"workers", prediction.workers}, {"work_s", prediction.work},   {"span_s", prediction.span},
-          {"serial_s", prediction.serial}, {"stages", std::move(stages)}, {"step_s", prediction.step_seconds}};
+  out = {{"workers", prediction.workers}, {"work_s", prediction.work},   {"span_s", prediction.span},
+         {"serial_s", prediction.serial}, {"stages", std::move(stages)}, {"step_s", prediction.step_seconds}};
 }
 
-void from_json(const nlohmann::json& json, Prediction& prediction) {
-  json.at("workers").get_to(prediction.workers);
-  json.at("work_s").get_to(prediction.work);
-  json.at("span_s").get_to(prediction.span);
-  json.at("serial_s").get_to(prediction.serial);
-  json.at("step_s").get_to(prediction.step_seconds);
+void from_json(const nlohmann::json& in, Prediction& prediction) {
+  in.at("workers").get_to(prediction.workers);
+  in.at("work_s").get_to(prediction.work);
+  in.at("span_s").get_to(prediction.span);
+  in.at("serial_s").get_to(prediction.serial);
+  in.at("step_s").get_to(prediction.step_seconds);
   prediction.stages.clear();
-  for (const auto& stage : json.at("stages")) {
+  for (const auto& stage : in.at("stages")) {
     prediction.stages.push_back({stage.at("name"), stage.at("work_s"), stage.at("serial_s"), stage.at("wall_s"),
                                  stage.at("longest_s"), stage.at("tasks")});
   }

@@ -81,9 +81,9 @@ Table costs_table(const MachineCosts& costs) {
     table.rows.push_back({text(name), number(factor * figure.median, 3), number(factor * figure.low, 3),
                           number(factor * figure.high, 3), text(unit)});
   };
-  constexpr double kNano = 1e9;
+  constexpr double kNsPerSecond = 1e9;
   constexpr double kMicro = 1e6;
-  row("spawn a task", costs.spawn, kNano, "ns");
+  row("spawn a task", costs.spawn, kNsPerSecond, "ns");
   row("steal", costs.steal, kMicro, "us");
   row("wake a worker", costs.wake, kMicro, "us");
   row("a worker sleeps after", costs.spin, kMicro, "us");
