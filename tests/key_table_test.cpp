@@ -16,7 +16,7 @@
 
 #include "op_script.hpp"
 
-namespace sweepgrid {
+namespace sweepgrid::key_table_test {
 namespace {
 
 /// A few values only, so that keys collide all the time and clusters wrap round the end of the buckets.
@@ -156,4 +156,4 @@ TEST(KeyTable, HoldsCopiesFromInsertToRelease) {
 }
 
 }  // namespace
-}  // namespace sweepgrid
+}  // namespace sweepgrid::key_table_test
