@@ -37,7 +37,7 @@ concept BoxLike = requires(const T& box) {
 
 /// a <= b, and neither is NaN. By bits.
 template <class Scalar>
-[[nodiscard]] constexpr bool in_order(Scalar a, Scalar b) {
+[[nodiscard, gnu::always_inline]] constexpr bool in_order(Scalar a, Scalar b) {
   const auto low = rounding::steps_from_zero(a);
   const auto high = rounding::steps_from_zero(b);
   if constexpr (std::floating_point<Scalar>) {
@@ -70,8 +70,9 @@ struct Box {
     }
   }
 
-  /// No coordinate is NaN, and min <= max on every axis.
-  [[nodiscard]] bool valid() const {
+  /// No coordinate is NaN, and min <= max on every axis. Inline always: else the linker may have the library, which
+  /// asks for every update, use a client's copy that is not optimised.
+  [[nodiscard, gnu::always_inline]] bool valid() const {
 #if !__FINITE_MATH_ONLY__
     // All that boxes of positive extent need, and much faster than bits: a NaN is in no order, and what is in strict
     // order where denormals are read as zero is so where they are not.

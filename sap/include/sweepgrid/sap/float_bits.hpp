@@ -49,7 +49,7 @@ template <std::floating_point Real>
 /// How many numbers of the type away from zero, downwards if negative: in the order of the values, and 0 for both
 /// zeros. A NaN is beyond the infinity of its sign. Of an integer, itself.
 template <class Scalar>
-[[nodiscard]] constexpr auto steps_from_zero(Scalar value) {
+[[nodiscard, gnu::always_inline]] constexpr auto steps_from_zero(Scalar value) {
   if constexpr (std::floating_point<Scalar>) {
     static_assert(std::numeric_limits<Scalar>::is_iec559 && sizeof(Scalar) == sizeof(BitsOf<Scalar>));
     const auto steps = static_cast<std::make_signed_t<BitsOf<Scalar>>>(magnitude(value));
