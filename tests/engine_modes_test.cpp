@@ -15,7 +15,7 @@
 #include "client_mode.hpp"
 #include "clients/scene.hpp"
 
-namespace sweepgrid {
+namespace sweepgrid::modes {
 namespace {
 
 using clients::Regime;
@@ -156,7 +156,7 @@ TEST(EngineModes, ExactEnvelopesStayExact) {
 }
 
 TEST(EngineModes, BulkCallsOfManyObjectsAreRightToo) {
-  Regime many = denormals(9000);  // enough for shares on several workers
+  Regime many = denormals(6000);  // enough for shares on several workers
   many.world = 400'000;
   many.steps = 2;
   const Played expected = play<float, 2>(many, {}, Where::kNone, 1, false);
@@ -203,4 +203,4 @@ TEST(EngineModes, NaNAndInvertedDenormalBoxesAreRefusedByEveryCall) {
 }
 
 }  // namespace
-}  // namespace sweepgrid
+}  // namespace sweepgrid::modes

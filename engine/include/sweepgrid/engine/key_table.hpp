@@ -111,9 +111,13 @@ class KeyTable {
   [[nodiscard]] std::uint32_t hash_of(const void* key) const;
   [[nodiscard]] static std::size_t shard_of(std::uint32_t hash) { return hash >> (32 - kShardBits); }
   [[nodiscard]] static std::uint32_t tag_of(std::uint32_t hash) { return hash << kShardBits; }
-  [[nodiscard]] auto is_key(const void* key) const {
-    return [this, key](ObjectId object) { return type_.same(keys_.address(object), key); };
-  }
+  /// Whether an object has the key. No lambda: clang deduces no type of a function that is used further up.
+  struct IsKey {
+    const KeyTable& table;
+    const void* key;
+    bool operator()(ObjectId object) const { return table.type_.same(table.keys_.address(object), key); }
+  };
+  [[nodiscard]] IsKey is_key(const void* key) const { return {*this, key}; }
   void store(ObjectId object, const void* key, std::uint32_t hash);
 
   const KeyType& type_;
