@@ -103,10 +103,9 @@ class Engine {
   /// objects, or has raised the limit. The cells are made anew, so a refused step costs about as much as inserting all
   /// objects.
   ///
-  /// Throws only what allocation throws, and then leaves everything as a refused step does; pairs() throws
-  /// std::logic_error if there was no memory for the cells either, until another step(). Two cases are not covered:
-  /// with EnvelopeOptions::exact, the engine can only be destroyed after that, and oneTBB's own allocations must not
-  /// fail.
+  /// Throws what allocation throws, what copying or comparing keys throws, and std::invalid_argument that names two
+  /// objects whose keys `Order` holds to be equal; and then leaves everything as a refused step does. oneTBB's own
+  /// allocations must not fail.
   const Events<Key>& step() {
     engine_.step();
     return *events_;

@@ -46,6 +46,15 @@ class EngineCore {
   /// Runs the graph on what was queued, then lets erased ids be reused. Returns false when that is over the budget;
   /// then, and when it throws, everything is as before: ops queued, pairs those of the latest step that was done.
   [[nodiscard]] bool step();
+  /// The same in two parts, for those who can fail between them: what run_step() has done, unless it returned false or
+  /// threw, is made the latest step by commit_step(), or is taken back by cancel_step().
+  [[nodiscard]] bool run_step();
+  void commit_step() noexcept;
+  void cancel_step() noexcept;
+  /// Makes the cells anew if there was no memory for them when the latest step was taken back, as the next step would.
+  void mend() {
+    if (broken_) restore_cells();
+  }
   void set_step_bytes(std::optional<std::uint64_t> bytes) { config_.step_bytes = bytes; }
 
   /// The events of the latest step come in lists, in no order; with single reporters a list may name a pair twice.

@@ -71,7 +71,14 @@ EngineCore<Scalar, Dim>::~EngineCore() = default;
 
 template <class Scalar, int Dim>
 bool EngineCore<Scalar, Dim>::step() {
-  if (broken_) restore_cells();
+  if (!run_step()) return false;
+  commit_step();
+  return true;
+}
+
+template <class Scalar, int Dim>
+bool EngineCore<Scalar, Dim>::run_step() {
+  mend();
   counters_ = StepCounters{};
   regridding_ = false;
   idle_ = !objects_.anything_queued();
@@ -92,8 +99,12 @@ bool EngineCore<Scalar, Dim>::step() {
       throw;
     }
   }
-  ++steps_;
   return true;
+}
+
+template <class Scalar, int Dim>
+void EngineCore<Scalar, Dim>::cancel_step() noexcept {
+  if (!idle_) take_back_step();
 }
 
 // ---- after the stages
@@ -107,7 +118,12 @@ void EngineCore<Scalar, Dim>::finish_step() {
     counters_.cells += task.out.counters;
     levels_.grid(task.grid).drop_empty(task.shard, task.out.emptied);
   }
-  // Nothing throws from here on, so the step cannot be taken back any more.
+}
+
+template <class Scalar, int Dim>
+void EngineCore<Scalar, Dim>::commit_step() noexcept {
+  ++steps_;
+  if (idle_) return;
   for (RouteBlock& block : blocks_) {
     counters_ += block.counters;
     objects_.free_ids(block.retired);

@@ -46,13 +46,11 @@ void KeyedEngine<Scalar, Dim>::update_envelopes(std::span<const Handle> objects,
     require_valid(boxes[*bad], p.keys.key(live(objects[*bad], "update")), "update");
   }
   p.for_shares(shares, [&](const auto& share) {
-    double farthest = 0;
     for (std::size_t i = 0; i < share.items.size(); ++i) {
       if (i + kAhead < share.items.size()) table.prefetch(objects[share.items[i + kAhead]]);
       const std::size_t item = share.items[i];
-      table.replace(objects[item].index, boxes[item], farthest);
+      table.update(objects[item].index, boxes[item]);
     }
-    table.measure(farthest);
   });
 }
 
@@ -95,26 +93,36 @@ void KeyedEngine<Scalar, Dim>::require_margin(const void* key, const char* call,
 template <class Scalar, int Dim>
 bool KeyedEngine<Scalar, Dim>::step_with_envelopes() {
   Parts& p = *parts_;
+  bool ran = false;  // the core's part of a query, which is to be committed or cancelled
+  const auto cancel = [&] {
+    if (ran) p.core.cancel_step();
+    p.envelopes->cancel_step(p.objects());
+  };
   bool query = false;
-  bool done = true;
   try {
     query = p.envelopes->begin_step(p.objects(), p.core.executor());
-    if (query) done = step_core();
+    if (query) {
+      if (!p.objects().anything_queued()) p.order.rest();
+      ran = p.core.run_step();
+      if (!ran) {
+        cancel();
+        return false;
+      }
+    } else {
+      p.core.mend();
+    }
+    if (p.filter ? !p.filter->run_step(query) : !query) p.order.rest();
   } catch (...) {
-    p.envelopes->cancel_step(p.objects());
+    cancel();
     throw;
   }
-  if (!done) {
-    p.envelopes->cancel_step(p.objects());
-    return false;
+  if (query) p.core.commit_step();
+  p.envelopes->end_step(p.core.executor());
+  if (p.filter) {
+    p.filter->commit_step(p.begins(), p.ends());
+  } else if (query) {
+    p.core.count_events(p.begins(), p.ends());
   }
-  if (query) p.envelopes->end_query(p.core.executor());
-  if (!p.filter) {
-    if (!query) p.order.rest();
-    return true;
-  }
-  if (!p.filter->step(query)) p.order.rest();
-  p.filter->count_events(p.begins(), p.ends());
   return true;
 }
 

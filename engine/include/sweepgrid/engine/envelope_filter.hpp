@@ -10,6 +10,7 @@
 #include <sweepgrid/engine/candidate_lists.hpp>
 #include <sweepgrid/engine/engine_core.hpp>
 #include <sweepgrid/engine/envelopes.hpp>
+#include <sweepgrid/sap/high_water.hpp>
 #include <sweepgrid/sap/ids.hpp>
 #include <sweepgrid/scheduler/stage_graph.hpp>
 
@@ -34,18 +35,19 @@ class EnvelopeFilter {
   /// What stages that read the lists of events wait for.
   [[nodiscard]] StageGraph::StageId last_stage() const { return filter_stage_; }
 
-  /// Finds the events of this step; `query`: the core has stepped. Returns false, and does not run the graph, where
-  /// there can be none.
-  bool step(bool query);
+  /// Finds the events of this step; `query`: the core has run one. Returns false, and does not run the graph, where
+  /// there can be none. What clients can ask for stays that of the latest step, also if it throws, until commit_step().
+  bool run_step(bool query);
+  /// The step that run_step() ran is the latest one. `begins`, `ends`: how many events it has, free of doubles. Throws
+  /// nothing, but what the executor's own allocations throw.
+  void commit_step(std::size_t begins, std::size_t ends);
 
   /// As EngineCore's.
-  [[nodiscard]] std::size_t lists() const { return tasks_.size(); }
+  [[nodiscard]] std::size_t lists() const { return tasks_used_; }
   [[nodiscard]] std::span<const PairKey> begins(std::size_t list) const { return tasks_[list].begins; }
   [[nodiscard]] std::span<const PairKey> ends(std::size_t list) const { return tasks_[list].ends; }
   [[nodiscard]] std::vector<PairKey> pairs() const;
 
-  /// To be told the numbers of events of every step, once they are free of doubles.
-  void count_events(std::size_t begins, std::size_t ends);
   /// Whether trace() is kept: the tasks of the core's graph and of this one, whose stages come after, in the latest
   /// step.
   void record(bool on) { graph_->record(on); }
@@ -53,7 +55,7 @@ class EnvelopeFilter {
   /// Puts what clients see in place of what the core saw: events, pairs, the stages of this graph too.
   void add_stats(Stats& stats) const;
 
-  void trim(std::size_t bound) { lists_.resize(std::min(bound, lists_.bound())); }
+  void trim(std::size_t bound) { lists_.trim(bound); }
 
   /// V2: the candidates are the pairs of the core. Throws InvariantError. Precondition: nothing queued there.
   void validate() const;
@@ -63,15 +65,19 @@ class EnvelopeFilter {
   struct Task {
     std::vector<PairKey> begins;
     std::vector<PairKey> ends;
+    HighWater begins_water;
+    HighWater ends_water;
   };
 
   void plan_filter(std::vector<std::uint64_t>& costs);
   void filter(std::size_t task);
   void filter_object(ObjectId object, Task& out) const;
-  void plan_settle(std::vector<std::uint64_t>& costs);
-  void settle(std::size_t task);
-  void count_candidates();
+  void plan_candidates(std::vector<std::uint64_t>& costs);
+  void prepare_candidates(std::size_t shard);
+  void apply(std::size_t task) noexcept;
+  void recycle();
   void join_traces();
+  [[nodiscard]] std::size_t bytes() const;
 
   [[nodiscard]] std::size_t new_lists() const { return query_ ? core_.lists() : 0; }
   [[nodiscard]] std::span<const std::uint32_t> granules(std::size_t block) const {
@@ -93,6 +99,7 @@ class EnvelopeFilter {
   Core& core_;
   BoxesAndEnvelopes& envelopes_;
   CandidateLists lists_;
+  std::size_t entries_ = 0;   // in the lists
   std::uint64_t begins_ = 0;  // of the latest step
   std::uint64_t ends_ = 0;
   std::uint64_t total_begins_ = 0;
@@ -101,8 +108,11 @@ class EnvelopeFilter {
   TaskTrace trace_;
   bool query_ = false;
   std::size_t blocks_ = 0;  // of granules; the first tasks
+  // Never fewer than before, lest the memory of their lists is lost.
   std::vector<Task> tasks_;
+  std::size_t tasks_used_ = 0;
   std::vector<CandidateLists::Shard> shards_;
+  std::size_t shards_used_ = 0;
   std::unique_ptr<StageGraph> graph_;
   StageGraph::StageId filter_stage_ = 0;
 };

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include <sweepgrid/engine/envelope_filter.hpp>
@@ -16,27 +17,59 @@ EnvelopeFilter<Scalar, Dim>::EnvelopeFilter(Core& core, BoxesAndEnvelopes& envel
       "filter", {}, [this](std::vector<std::uint64_t>& costs) { plan_filter(costs); },
       [this](std::size_t task) { filter(task); });
   graph_->add(
-      "candidates", {filter_stage_}, [this](std::vector<std::uint64_t>& costs) { plan_settle(costs); },
-      [this](std::size_t task) { settle(task); });
+      "candidates", {filter_stage_}, [this](std::vector<std::uint64_t>& costs) { plan_candidates(costs); },
+      [this](std::size_t shard) { prepare_candidates(shard); });
 }
 
 template <class Scalar, int Dim>
-bool EnvelopeFilter<Scalar, Dim>::step(bool query) {
+bool EnvelopeFilter<Scalar, Dim>::run_step(bool query) {
+  recycle();
   query_ = query;
-  bool& any = ran_;
-  any = !envelopes_.granules().empty();
-  for (std::size_t list = 0; list < new_lists() && !any; ++list) {
-    any = !core_.begins(list).empty() || !core_.ends(list).empty();
+  ran_ = !envelopes_.granules().empty();
+  for (std::size_t list = 0; list < new_lists() && !ran_; ++list) {
+    ran_ = !core_.begins(list).empty() || !core_.ends(list).empty();
   }
-  if (any) {
-    if (lists_.bound() < envelopes_.bound()) lists_.resize(envelopes_.bound());
+  if (ran_) {
+    if (lists_.bound() < envelopes_.bound()) lists_.grow(envelopes_.bound());
     graph_->run();
-    count_candidates();
-  } else if (query) {
-    core_.count_events(0, 0);
   }
   join_traces();
-  return any;
+  return ran_;
+}
+
+// The candidates after this step, by shard; and what has changed is forgotten, by block.
+template <class Scalar, int Dim>
+void EnvelopeFilter<Scalar, Dim>::commit_step(std::size_t begins, std::size_t ends) {
+  const std::size_t tasks = shards_used_ + blocks_;
+  if (tasks <= 2) {
+    for (std::size_t task = 0; task < tasks; ++task) apply(task);
+  } else {
+    const auto body = [this](std::size_t task) { apply(task); };
+    core_.executor().for_each(tasks, std::ref(body));  // by reference, lest it be allocated
+  }
+  std::size_t added = 0;
+  std::size_t removed = 0;
+  for (const CandidateLists::Shard& shard : std::span(shards_).first(shards_used_)) {
+    added += shard.entries_added(), removed += shard.entries_removed();
+  }
+  entries_ += added;
+  entries_ -= removed;
+  lists_.end_step(entries_);
+  if (query_) core_.count_events(added / 2, removed / 2);
+  begins_ = begins;
+  ends_ = ends;
+  total_begins_ += begins;
+  total_ends_ += ends;
+}
+
+template <class Scalar, int Dim>
+void EnvelopeFilter<Scalar, Dim>::recycle() {
+  for (Task& task : tasks_) {
+    task.begins_water.recycle(task.begins);
+    task.ends_water.recycle(task.ends);
+  }
+  for (CandidateLists::Shard& shard : shards_) shard.recycle();
+  blocks_ = tasks_used_ = shards_used_ = 0;
 }
 
 // One after the other, as they ran.
@@ -62,7 +95,8 @@ void EnvelopeFilter<Scalar, Dim>::plan_filter(std::vector<std::uint64_t>& costs)
   blocks_ = workers == 1 ? std::min<std::size_t>(changed, 1) : std::min(changed / kSmallest + 1, 8 * workers);
   for (std::size_t block = 0; block < blocks_; ++block) costs.push_back(256 * granules(block).size());
   for (std::size_t list = 0; list < new_lists(); ++list) costs.push_back(core_.begins(list).size());
-  tasks_.resize(costs.size());
+  if (tasks_.size() < costs.size()) tasks_.resize(costs.size());
+  tasks_used_ = costs.size();
 }
 
 // Reads the lists of candidates as they were at the previous step: what is new comes from the core's events, of what
@@ -70,8 +104,6 @@ void EnvelopeFilter<Scalar, Dim>::plan_filter(std::vector<std::uint64_t>& costs)
 template <class Scalar, int Dim>
 void EnvelopeFilter<Scalar, Dim>::filter(std::size_t index) {
   Task& task = tasks_[index];
-  task.begins.clear();
-  task.ends.clear();
   if (index >= blocks_) {
     for (const PairKey pair : core_.begins(index - blocks_)) {
       if (do_overlap(pair.lower(), pair.upper())) task.begins.push_back(pair);
@@ -104,47 +136,41 @@ void EnvelopeFilter<Scalar, Dim>::filter_object(ObjectId object, Task& out) cons
   }
 }
 
-// The candidates after this step, by shard; and what has changed is forgotten, by block.
 template <class Scalar, int Dim>
-void EnvelopeFilter<Scalar, Dim>::plan_settle(std::vector<std::uint64_t>& costs) {
+void EnvelopeFilter<Scalar, Dim>::plan_candidates(std::vector<std::uint64_t>& costs) {
   std::size_t changes = 0;
   for (std::size_t list = 0; list < new_lists(); ++list) changes += core_.begins(list).size() + core_.ends(list).size();
   const auto workers = static_cast<std::size_t>(core_.executor().concurrency());
-  shards_.resize(changes == 0 ? 0 : changes < 1024 ? 1 : workers);
-  costs.assign(shards_.size() + blocks_, 1);
+  const std::size_t shards = changes == 0 ? 0 : changes < 1024 ? 1 : workers;
+  if (shards_.size() < shards) shards_.resize(shards);
+  shards_used_ = shards;
+  costs.assign(shards, 1);
 }
 
 template <class Scalar, int Dim>
-void EnvelopeFilter<Scalar, Dim>::settle(std::size_t task) {
-  if (task >= shards_.size()) {
-    for (const std::uint32_t granule : granules(task - shards_.size())) envelopes_.settle(granule);
-    return;
-  }
-  CandidateLists::Shard& shard = shards_[task];
-  shard.reset(task, shards_.size());
-  for (std::size_t list = 0; list < core_.lists(); ++list) {
+void EnvelopeFilter<Scalar, Dim>::prepare_candidates(std::size_t index) {
+  CandidateLists::Shard& shard = shards_[index];
+  shard.reset(index, shards_used_);
+  for (std::size_t list = 0; list < new_lists(); ++list) {
     shard.add(core_.begins(list));
     shard.remove(core_.ends(list));
   }
-  lists_.apply(shard);
+  lists_.prepare(shard);
 }
 
 template <class Scalar, int Dim>
-void EnvelopeFilter<Scalar, Dim>::count_candidates() {
-  std::uint64_t added = 0;
-  std::int64_t growth = 0;
-  for (const CandidateLists::Shard& shard : shards_) added += shard.entries_added(), growth += shard.growth();
-  const auto begun = static_cast<std::size_t>(added / 2);
-  const auto ended = static_cast<std::size_t>(static_cast<std::int64_t>(begun) - growth / 2);
-  if (query_) core_.count_events(begun, ended);
+void EnvelopeFilter<Scalar, Dim>::apply(std::size_t task) noexcept {
+  if (task < shards_used_) return lists_.apply(shards_[task]);
+  for (const std::uint32_t granule : granules(task - shards_used_)) envelopes_.settle(granule);
 }
 
 template <class Scalar, int Dim>
-void EnvelopeFilter<Scalar, Dim>::count_events(std::size_t begins, std::size_t ends) {
-  begins_ = begins;
-  ends_ = ends;
-  total_begins_ += begins;
-  total_ends_ += ends;
+std::size_t EnvelopeFilter<Scalar, Dim>::bytes() const {
+  std::size_t bytes = lists_.bytes() + trace_.capacity() * sizeof(TaskRecord) + tasks_.capacity() * sizeof(Task) +
+                      shards_.capacity() * sizeof(CandidateLists::Shard);
+  for (const Task& task : tasks_) bytes += (task.begins.capacity() + task.ends.capacity()) * sizeof(PairKey);
+  for (const CandidateLists::Shard& shard : shards_) bytes += shard.bytes();
+  return bytes;
 }
 
 template <class Scalar, int Dim>
@@ -154,7 +180,7 @@ void EnvelopeFilter<Scalar, Dim>::add_stats(Stats& stats) const {
   stats.total.begins = total_begins_;
   stats.total.ends = total_ends_;
   stats.pairs = total_begins_ - total_ends_;
-  stats.bytes_witnesses += lists_.bytes();
+  stats.bytes_witnesses += bytes();
   for (StageGraph::StageId stage = 0; stage < graph_->size(); ++stage) {
     stats.stages.push_back({graph_->name(stage), ran_ ? graph_->seconds(stage) : 0});
   }

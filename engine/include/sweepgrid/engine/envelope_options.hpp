@@ -11,7 +11,7 @@ namespace sweepgrid {
 /// What a step between two queries does when a box has left what the latest query covered.
 enum class OnViolation {
   kReport,  ///< says so in the report, and goes on: pairs may be missed until the next query
-  kQuery,   ///< queries at once, and counts the stride anew: nothing is missed
+  kQuery,   ///< queries at once, with new envelopes for those that have left theirs: nothing is missed
 };
 
 /// Boxes that are wider than the objects' own, so that less changes from step to step, or that cover the way between
@@ -26,8 +26,9 @@ struct EnvelopeOptions {
   /// tremble. Superset only, of T0. For one object: Engine::insert() with a margin, Engine::set_margin().
   double margin = 0;
 
-  /// Widens the margin by so many times the largest displacement that an update of late has made on any axis ("of
-  /// late": a displacement counts for seven eighths at the next query). Finite and not negative. With a stride,
+  /// Widens an object's margin by so many times its own speed: the largest displacement on any axis of late, where each
+  /// counts for no more than the one before it, so that a jump does not count ("of late": it counts for seven eighths
+  /// after `stride` steps; the one before was made at most 8 steps earlier). Finite and not negative. With a stride,
   /// 2 * (stride - 1) keeps boxes inside from query to query as long as no object becomes faster, and is updated at
   /// most once per step. Superset only, of T0.
   double margin_steps = 0;
@@ -56,10 +57,10 @@ struct EnvelopeOptions {
 struct EnvelopeReport {
   std::uint64_t steps = 0;       ///< so far
   std::uint64_t queries = 0;     ///< so far: steps at which envelopes were compared
-  std::uint64_t early = 0;       ///< of these: made because of a violation
+  std::uint64_t early = 0;       ///< of these: made because of a violation, for those objects
   std::uint64_t violations = 0;  ///< so far: sum over steps of objects outside
   std::vector<Handle> outside;   ///< latest step: objects outside of what is covered, in the order of their indices
-  double margin = 0;             ///< of the envelopes that are made now, for objects without one of their own
+  double margin = 0;             ///< the widest that a query last gave to objects without one of their own
   std::size_t candidates = 0;    ///< pairs of envelopes as of the latest query
 };
 

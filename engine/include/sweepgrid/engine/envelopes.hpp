@@ -15,9 +15,11 @@
 #include <sweepgrid/engine/envelope_box.hpp>
 #include <sweepgrid/engine/envelope_options.hpp>
 #include <sweepgrid/engine/handle.hpp>
+#include <sweepgrid/engine/object_speed.hpp>
 #include <sweepgrid/engine/object_table.hpp>
 #include <sweepgrid/engine/stable_vector.hpp>
 #include <sweepgrid/sap/box.hpp>
+#include <sweepgrid/sap/high_water.hpp>
 #include <sweepgrid/sap/ids.hpp>
 #include <sweepgrid/scheduler/executor.hpp>
 
@@ -51,14 +53,7 @@ class Envelopes {
   void insert(Handle object, const BoxType& box, const BoxType& envelope, double margin = kCommonMargin);
 
   /// Precondition of what follows: a good handle, a valid box.
-  void update(ObjectId object, const BoxType& box) {
-    double farthest = 0;
-    replace(object, box, farthest);
-    measure(farthest);
-  }
-  /// As above in bulk: `farthest` grows to the largest displacement, to be handed to measure() at last.
-  void replace(ObjectId object, const BoxType& box, double& farthest);
-  void measure(double farthest);
+  void update(ObjectId object, const BoxType& box);
   /// The object will have moved by `ahead` at the next step.
   void update(ObjectId object, const BoxType& box, const Displacement& ahead);
   void set_margin(ObjectId object, double margin);
@@ -78,18 +73,20 @@ class Envelopes {
 
   // ---- the step
 
-  /// Decides whether this step is a query, and if it is, queues new envelopes with `objects`; end_query() is to follow.
-  /// If it throws, or the query cannot be made, cancel_step().
+  /// Decides whether this step is a query, and if it is, queues new envelopes with `objects`: of all objects that need
+  /// one, or if the query is early, of those that have left theirs. To be followed by end_step(); if it throws, or the
+  /// step cannot be done, by cancel_step().
   bool begin_step(Objects& objects, Executor& executor);
-  void end_query(Executor& executor);
-  /// As if begin_step() had not been called. Throws nothing.
-  void cancel_step(Objects& objects);
+  /// Throws nothing, but what the executor's own allocations throw.
+  void end_step(Executor& executor);
+  /// As if begin_step() had not been called.
+  void cancel_step(Objects& objects) noexcept;
 
   /// Objects whose marks are looked for together, and which of them held a marked object as the step began.
   static constexpr ObjectId kGranule = Objects::kGranule;
   [[nodiscard]] std::span<const std::uint32_t> granules() const { return granules_; }
 
-  // With `exact`: what changed since the latest step. To be asked from begin_step() to finish_step(), and between two
+  // With `exact`: what changed since the latest step. To be asked from begin_step() to settle(), and between two
   // steps about the latest one.
   [[nodiscard]] bool changed(ObjectId object) const { return (states_[object] & (kChanged | kBorn | kErased)) != 0; }
   [[nodiscard]] bool existed(ObjectId object) const {
@@ -100,16 +97,15 @@ class Envelopes {
     return (states_[object] & kChanged) != 0 ? others_[object] : records_[object].box;
   }
   /// What changed is now as it was at the latest step. `granule`: one of granules().
-  void settle(std::uint32_t granule);
+  void settle(std::uint32_t granule) noexcept;
 
   [[nodiscard]] ObjectId bound() const { return static_cast<ObjectId>(records_.size()); }
   [[nodiscard]] std::uint64_t steps() const { return report_.steps; }
   /// Whether the latest step was a query.
-  [[nodiscard]] bool queried() const { return age_ == 0; }
-  [[nodiscard]] EnvelopeReport report() const;
-  [[nodiscard]] std::size_t bytes() const {
-    return records_.bytes() + states_.bytes() + others_.bytes() + marks_.bytes();
-  }
+  [[nodiscard]] bool queried() const { return queried_; }
+  [[nodiscard]] EnvelopeReport report() const { return report_; }
+  /// Memory in use. O(workers).
+  [[nodiscard]] std::size_t bytes() const;
 
   /// Gives back the memory of objects from `bound` on.
   void trim(std::uint64_t bound);
@@ -150,54 +146,69 @@ class Envelopes {
     std::vector<ObjectId> outside;
     std::vector<Seen> seen;
     std::vector<std::pair<ObjectId, BoxType>> first;  // envelopes that no query knew, and that were made anew
+    double margin = -1;                               // the widest of new envelopes with the common rule
+    std::array<HighWater, 3> water;                   // of the lists
   };
 
-  [[nodiscard]] double margin_of(double own) const {
-    const double margin = own < 0 ? margin_ : own;
-    return std::is_integral_v<Scalar> ? std::ceil(margin) : margin;
+  [[nodiscard]] static double rounded(double margin) { return std::is_integral_v<Scalar> ? std::ceil(margin) : margin; }
+  /// For queueing calls, and for the step that they are for.
+  [[nodiscard]] double margin_of(ObjectId object) const {
+    const double own = records_[object].margin;
+    if (own >= 0) return rounded(own);
+    return rounded(options_.margin_steps > 0 ? common_margin(speeds_[object].at(now(), fade_)) : options_.margin);
   }
-  [[nodiscard]] bool fits(const Record& record) const {
-    return holds(record.envelope, record.box) && !loose(record, record.box);
+  [[nodiscard]] double common_margin(double speed) const { return options_.margin + options_.margin_steps * speed; }
+  [[nodiscard]] bool fits(ObjectId object) const {
+    const Record& record = records_[object];
+    return holds(record.envelope, record.box) && !loose(record.envelope, record.box, margin_of(object));
   }
-  [[nodiscard]] bool loose(const Record& record, const BoxType& needed) const {
-    return slack(record.envelope, needed) > kLoose * margin_of(record.margin);
+  [[nodiscard]] static bool loose(const BoxType& envelope, const BoxType& needed, double margin) {
+    return slack(envelope, needed) > kLoose * margin;
   }
 
-  /// Largest displacement of late.
-  [[nodiscard]] double largest_now() const {
-    return std::max(farthest_.load(std::memory_order_relaxed), largest_ * 7 / 8);
-  }
-  [[nodiscard]] double common_margin(double displacement) const {
-    return options_.margin + options_.margin_steps * displacement;
+  /// The step that is being queued, or that is running.
+  [[nodiscard]] std::uint32_t now() const { return static_cast<std::uint32_t>(report_.steps); }
+  void note_displacement(ObjectId object, const BoxType& box) {
+    if (options_.margin_steps > 0) speeds_[object].note(displacement(records_[object].box, box), now(), fade_);
   }
   void mark(ObjectId object);
+  /// Those of the latest scan.
+  [[nodiscard]] std::span<Block> blocks() { return std::span(blocks_).first(blocks_used_); }
   void collect_granules();
   template <class Visit>
   void scan(Executor& executor, Visit&& visit);
-  void find_outside(Executor& executor);
-  void renew(Executor& executor, Objects& objects);
+  void check(ObjectId object, Objects& objects, Block& out);
   void renew(ObjectId object, Objects& objects, Block& out);
+  void recycle();
+  template <class Body>
+  void for_blocks(Executor& executor, Body&& body);
 
   /// An envelope by which a box is narrower by more than so many margins is made anew; when it is made, they are 2.
   static constexpr double kLoose = 6;
 
   EnvelopeOptions options_;
-  bool tracks_;        // whether every change is marked, or only those that leave their envelope
-  double margin_ = 0;  // the common one
+  bool tracks_;  // whether every change is marked, or only those that leave their envelope
+  double fade_;  // of speeds
   StableVector<Record> records_;
   StableVector<std::uint16_t> states_;
   StableVector<std::uint8_t> marks_;  // by granule
   // exact: the box of the latest step, of what has changed. swept: the other end of the way.
   StableVector<BoxType> others_;
+  StableVector<ObjectSpeed> speeds_;  // with margin_steps
   std::mutex growth_;
   std::atomic<bool> marked_ = false;
-  std::atomic<double> farthest_ = 0;  // displacement since the latest query
 
-  double largest_ = 0;  // displacement of late
-  int age_ = 0;         // steps since the latest query
-  bool early_ = false;  // this step is a query because of a violation
+  int age_;               // steps since the latest query that was not early
+  bool queried_ = false;  // the latest step was a query
+  // This step:
+  bool query_ = false;
+  bool early_ = false;  // because of a violation
   std::vector<std::uint32_t> granules_;
-  std::vector<Block> blocks_;
+  HighWater granules_water_;
+  std::vector<Block> blocks_;  // never fewer than before
+  std::size_t blocks_used_ = 0;
+  std::vector<Handle> outside_;
+  HighWater outside_water_;
   EnvelopeReport report_;
 };
 

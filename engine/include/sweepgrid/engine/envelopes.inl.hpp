@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <functional>
 #include <stdexcept>
 #include <string>
 
@@ -11,7 +12,10 @@ namespace sweepgrid {
 
 template <class Scalar, int Dim>
 Envelopes<Scalar, Dim>::Envelopes(const EnvelopeOptions& options)
-    : options_(options), tracks_(options.swept || options.stride > 1 || options.exact), age_(options.stride - 1) {
+    : options_(options),
+      tracks_(options.swept || options.stride > 1 || options.exact),
+      fade_(ObjectSpeed::fade_of(std::max(options.stride, 1))),
+      age_(options.stride - 1) {
   const auto refuse = [](const std::string& what) {
     throw std::invalid_argument("sweepgrid: EnvelopeOptions::" + what);
   };
@@ -23,14 +27,14 @@ Envelopes<Scalar, Dim>::Envelopes(const EnvelopeOptions& options)
   require_amount("margin_steps", options.margin_steps);
   if (options.stride < 1) refuse("stride is " + std::to_string(options.stride) + ", but must be at least 1");
   if (options.exact && options.swept) refuse("exact is for boxes at the steps, swept for the way between: not both");
-  margin_ = options.margin;
+  report_.margin = rounded(options.margin);
 }
 
 // ---- queueing
 
 template <class Scalar, int Dim>
 auto Envelopes<Scalar, Dim>::envelope_of(const BoxType& box, double margin) const -> BoxType {
-  return box.valid() ? grown(box, margin_of(margin)) : box;
+  return box.valid() ? grown(box, rounded(margin < 0 ? options_.margin : margin)) : box;
 }
 
 template <class Scalar, int Dim>
@@ -47,6 +51,7 @@ void Envelopes<Scalar, Dim>::make_room(std::uint64_t bound) {
   states_.grow(ends);
   for (std::uint64_t object = old_bound; object < ends; ++object) states_[static_cast<ObjectId>(object)] = 0;
   if (options_.exact || options_.swept) others_.grow(ends);
+  if (options_.margin_steps > 0) speeds_.grow(ends);
   records_.grow(ends);
 }
 
@@ -58,6 +63,7 @@ void Envelopes<Scalar, Dim>::insert(Handle object, const BoxType& box, const Box
   record.envelope = envelope;
   record.generation = object.generation;
   record.margin = static_cast<float>(margin);
+  if (options_.margin_steps > 0) speeds_[object.index].appear(now());
   states_[object.index] = kLive;
   if (!tracks_) return;
   states_[object.index] = static_cast<std::uint16_t>(kLive | kFresh | (options_.exact ? kBorn : 0));
@@ -72,20 +78,13 @@ void Envelopes<Scalar, Dim>::mark(ObjectId object) {
 }
 
 template <class Scalar, int Dim>
-void Envelopes<Scalar, Dim>::measure(double farthest) {
-  double known = farthest_.load(std::memory_order_relaxed);
-  while (farthest > known && !farthest_.compare_exchange_weak(known, farthest, std::memory_order_relaxed)) {
-  }
-}
-
-template <class Scalar, int Dim>
-void Envelopes<Scalar, Dim>::replace(ObjectId object, const BoxType& box, double& farthest) {
+void Envelopes<Scalar, Dim>::update(ObjectId object, const BoxType& box) {
+  note_displacement(object, box);
   Record& record = records_[object];
   std::uint16_t& state = states_[object];
-  if (options_.margin_steps > 0) farthest = std::max(farthest, displacement(record.box, box));
   if (!tracks_) {
     record.box = box;
-    if (fits(record)) return;
+    if (fits(object)) return;
     state |= kMoved;
     return mark(object);
   }
@@ -104,9 +103,9 @@ void Envelopes<Scalar, Dim>::replace(ObjectId object, const BoxType& box, double
 
 template <class Scalar, int Dim>
 void Envelopes<Scalar, Dim>::update(ObjectId object, const BoxType& box, const Displacement& ahead) {
+  note_displacement(object, box);
   Record& record = records_[object];
   std::uint16_t& state = states_[object];
-  if (options_.margin_steps > 0) measure(displacement(record.box, box));
   const BoxType way = swept(box, ahead);
   if (options_.stride == 1) {
     others_[object] = way;
@@ -140,75 +139,83 @@ void Envelopes<Scalar, Dim>::erase(ObjectId object) {
 
 template <class Scalar, int Dim>
 bool Envelopes<Scalar, Dim>::begin_step(Objects& objects, Executor& executor) {
-  ++report_.steps;
-  ++age_;
-  report_.outside.clear();
-  granules_.clear();
+  recycle();
   early_ = false;
-  bool query = age_ >= options_.stride;
-  if (marked_.load(std::memory_order_relaxed)) {
-    collect_granules();
-    if (!query) {
-      find_outside(executor);
-      if (!report_.outside.empty() && options_.on_violation == OnViolation::kQuery) {
-        query = early_ = true;
-        report_.outside.clear();
-      }
-    }
-    if (query) renew(executor, objects);
+  query_ = age_ + 1 >= options_.stride;
+  if (!marked_.load(std::memory_order_relaxed)) return query_;
+  collect_granules();
+  if (query_) {
+    scan(executor, [&](ObjectId object, Block& out) { renew(object, objects, out); });
+  } else {
+    scan(executor, [&](ObjectId object, Block& out) { check(object, objects, out); });
   }
-  if (!query) report_.violations += report_.outside.size();
-  return query;
+  for (const Block& block : blocks()) {
+    for (const ObjectId object : block.outside) outside_.push_back({object, records_[object].generation});
+    if (!query_ && !block.seen.empty()) early_ = true;
+  }
+  return query_ = query_ || early_;
 }
 
 template <class Scalar, int Dim>
-void Envelopes<Scalar, Dim>::end_query(Executor& executor) {
-  age_ = 0;
+void Envelopes<Scalar, Dim>::end_step(Executor& executor) {
+  ++report_.steps;
+  report_.violations += outside_.size();
+  std::swap(report_.outside, outside_);
+  queried_ = query_;
+  age_ = query_ && !early_ ? 0 : age_ + 1;
+  if (!query_) return;
   ++report_.queries;
   report_.early += early_ ? 1 : 0;
-  report_.violations += report_.outside.size();
   if (granules_.empty()) return;
-  largest_ = largest_now();
-  farthest_.store(0, std::memory_order_relaxed);
-  for (const std::uint32_t granule : granules_) marks_[granule] = 0;
-  marked_.store(false, std::memory_order_relaxed);
-  const auto settle_block = [this](std::size_t block) {
-    blocks_[block].first.clear();
+  double margin = -1;
+  for (const Block& block : blocks()) margin = std::max(margin, block.margin);
+  if (margin >= 0) report_.margin = margin;
+  if (!early_) {  // else others are still to be looked at
+    for (const std::uint32_t granule : granules_) marks_[granule] = 0;
+    marked_.store(false, std::memory_order_relaxed);
+  }
+  for_blocks(executor, [this](std::size_t block) {
     for (const auto& [object, state] : blocks_[block].seen) {
       states_[object] = state;
       if ((state & kStretched) != 0) mark(object);
     }
-  };
-  if (blocks_.size() == 1) {
-    settle_block(0);
-  } else {
-    executor.for_each(blocks_.size(), settle_block);
-  }
+  });
 }
 
-// What was queued with the object table stays so, but with the envelopes of the latest step.
+// What begin_step() queued with the object table is taken out of it again, whether or not the core has been given it.
 template <class Scalar, int Dim>
-void Envelopes<Scalar, Dim>::cancel_step(Objects& objects) {
-  --report_.steps;
-  --age_;
-  report_.outside.clear();
-  margin_ = common_margin(largest_);
-  if (granules_.empty()) return;
+void Envelopes<Scalar, Dim>::cancel_step(Objects& objects) noexcept {
   const auto put_back = [&](ObjectId object, const BoxType& envelope) {
     records_[object].envelope = envelope;
-    objects.update({object, records_[object].generation}, envelope);
+    objects.record(object).box = envelope;
   };
-  for (Block& block : blocks_) {
+  for (const Block& block : blocks()) {
     for (const auto& [object, envelope] : block.first) put_back(object, envelope);
-    block.first.clear();
   }
   for (const std::uint32_t granule : granules_) {
     for (ObjectId object = granule * kGranule; object < (granule + 1) * kGranule; ++object) {
       if ((states_[object] & kLive) == 0) continue;
-      if ((objects.state(object) & (Objects::kInserted | Objects::kUpdated)) != Objects::kUpdated) continue;
+      std::uint8_t& queued = objects.state(object);
+      if ((queued & (Objects::kInserted | Objects::kUpdated)) != Objects::kUpdated) continue;
       put_back(object, objects.record(object).before);
+      queued &= static_cast<std::uint8_t>(~Objects::kUpdated);
     }
   }
+  for (Block& block : blocks()) block.first.clear();
+}
+
+// Lists keep only what steps of late needed.
+template <class Scalar, int Dim>
+void Envelopes<Scalar, Dim>::recycle() {
+  granules_water_.recycle(granules_);
+  outside_water_.recycle(outside_);
+  for (Block& block : blocks_) {
+    block.water[0].recycle(block.outside);
+    block.water[1].recycle(block.seen);
+    block.water[2].recycle(block.first);
+    block.margin = -1;
+  }
+  blocks_used_ = 0;
 }
 
 template <class Scalar, int Dim>
@@ -225,12 +232,10 @@ void Envelopes<Scalar, Dim>::scan(Executor& executor, Visit&& visit) {
   constexpr std::size_t kSmallest = 8;  // granules that are worth a task
   const auto workers = static_cast<std::size_t>(executor.concurrency());
   const std::size_t wanted = workers == 1 ? 1 : std::clamp<std::size_t>(granules_.size() / kSmallest, 1, 4 * workers);
-  blocks_.resize(wanted);
-  const auto scan_block = [&](std::size_t index) {
+  if (blocks_.size() < wanted) blocks_.resize(wanted);
+  blocks_used_ = wanted;
+  for_blocks(executor, [&](std::size_t index) {
     Block& block = blocks_[index];
-    block.outside.clear();
-    block.seen.clear();
-    block.first.clear();
     for (std::size_t i = index * granules_.size() / wanted; i < (index + 1) * granules_.size() / wanted; ++i) {
       const ObjectId first = granules_[i] * kGranule;
       const std::uint16_t* const states = &states_[first];  // a granule is contiguous
@@ -238,34 +243,30 @@ void Envelopes<Scalar, Dim>::scan(Executor& executor, Visit&& visit) {
         if ((states[own] & (kFresh | kMoved | kStretched)) != 0) visit(first + own, block);
       }
     }
-  };
-  if (wanted == 1) {
-    scan_block(0);
-  } else {
-    executor.for_each(wanted, scan_block);
-  }
-  for (const Block& block : blocks_) {
-    for (const ObjectId object : block.outside) report_.outside.push_back({object, records_[object].generation});
-  }
-}
-
-// A step that is no query: who is outside of what the latest one covered.
-template <class Scalar, int Dim>
-void Envelopes<Scalar, Dim>::find_outside(Executor& executor) {
-  scan(executor, [this](ObjectId object, Block& out) {
-    const std::uint16_t state = states_[object];
-    if ((state & kLive) == 0) return;
-    const Record& record = records_[object];
-    if (options_.swept && (state & kMoved) != 0) others_[object] = hull(others_[object], record.box);
-    if ((state & kFresh) != 0 || !holds(record.envelope, record.box)) out.outside.push_back(object);
   });
 }
 
-// A query: queues the envelopes that it needs.
 template <class Scalar, int Dim>
-void Envelopes<Scalar, Dim>::renew(Executor& executor, Objects& objects) {
-  margin_ = common_margin(largest_now());
-  scan(executor, [&](ObjectId object, Block& out) { renew(object, objects, out); });
+template <class Body>
+void Envelopes<Scalar, Dim>::for_blocks(Executor& executor, Body&& body) {
+  if (blocks_used_ == 1) return body(0);
+  executor.for_each(blocks_used_, std::ref(body));  // by reference, lest it be allocated
+}
+
+// A step that is not to be a query: who is outside of what the latest one covered is named, or gets a new envelope.
+// Nobody else does, so that an early query costs those that made it necessary, and nobody's stride begins anew.
+template <class Scalar, int Dim>
+void Envelopes<Scalar, Dim>::check(ObjectId object, Objects& objects, Block& out) {
+  const std::uint16_t state = states_[object];
+  if ((state & kLive) == 0) return;
+  const Record& record = records_[object];
+  if (options_.swept && (state & kMoved) != 0) others_[object] = hull(others_[object], record.box);
+  if ((state & kFresh) == 0 && holds(record.envelope, record.box)) return;
+  if (options_.on_violation == OnViolation::kQuery) {
+    renew(object, objects, out);
+  } else {
+    out.outside.push_back(object);
+  }
 }
 
 template <class Scalar, int Dim>
@@ -273,27 +274,29 @@ void Envelopes<Scalar, Dim>::renew(ObjectId object, Objects& objects, Block& out
   const std::uint16_t state = states_[object];
   if ((state & kLive) == 0) return;
   Record& record = records_[object];
-  const double margin = margin_of(record.margin);
+  const double margin = margin_of(object);
   const bool ahead = (state & kAhead) != 0;
-  // Whoever goes where it was said to go again needs no way that leads there.
+  // An object whose prediction held and that has a new one needs no way from its previous box.
   if (ahead && (state & kPromised) != 0 && !holds(record.envelope, record.box)) out.outside.push_back(object);
   const bool appears = (state & kFresh) != 0 && options_.stride == 1 && !ahead;  // has no way behind it
   const bool way = options_.swept && (state & kMoved) != 0 && !appears;
   const BoxType needed = way ? hull(record.box, others_[object]) : record.box;
   const bool lasts = options_.stride == 1 || holds(record.envelope, grown(record.box, margin / 2));
-  if (!lasts || !holds(record.envelope, needed) || loose(record, needed)) {
-    if ((objects.state(object) & Objects::kInserted) != 0) out.first.emplace_back(object, record.envelope);
-    record.envelope = grown(needed, margin);
-    objects.update({object, record.generation}, record.envelope);
-  }
   int after = state & ~(kFresh | kMoved | kStretched | kAhead | kPromised);
   if (ahead) after |= kPromised;
-  if (way && loose(record, record.box)) after |= kStretched;
+  const bool made = !lasts || !holds(record.envelope, needed) || loose(record.envelope, needed, margin);
+  const BoxType envelope = made ? grown(needed, margin) : record.envelope;
+  if (way && loose(envelope, record.box, margin)) after |= kStretched;
   out.seen.push_back({object, static_cast<std::uint16_t>(after)});
+  if (!made) return;
+  if ((objects.state(object) & Objects::kInserted) != 0) out.first.emplace_back(object, record.envelope);
+  if (record.margin < 0) out.margin = std::max(out.margin, margin);
+  record.envelope = envelope;
+  objects.update({object, record.generation}, envelope);
 }
 
 template <class Scalar, int Dim>
-void Envelopes<Scalar, Dim>::settle(std::uint32_t granule) {
+void Envelopes<Scalar, Dim>::settle(std::uint32_t granule) noexcept {
   std::uint16_t* const states = &states_[granule * kGranule];
   for (ObjectId own = 0; own < kGranule; ++own) {
     const bool erased = (states[own] & kErased) != 0;
@@ -309,14 +312,17 @@ void Envelopes<Scalar, Dim>::trim(std::uint64_t bound) {
   records_.shrink(bound);
   states_.shrink(bound);
   others_.shrink(bound);
+  speeds_.shrink(bound);
   marks_.shrink(bound / kGranule);
 }
 
 template <class Scalar, int Dim>
-EnvelopeReport Envelopes<Scalar, Dim>::report() const {
-  EnvelopeReport report = report_;
-  report.margin = margin_;
-  return report;
+std::size_t Envelopes<Scalar, Dim>::bytes() const {
+  const auto of = [](const auto& list) { return list.capacity() * sizeof(list[0]); };
+  std::size_t bytes = records_.bytes() + states_.bytes() + others_.bytes() + speeds_.bytes() + marks_.bytes();
+  bytes += of(granules_) + of(outside_) + of(report_.outside) + of(blocks_);
+  for (const Block& block : blocks_) bytes += of(block.outside) + of(block.seen) + of(block.first);
+  return bytes;
 }
 
 template <class Scalar, int Dim>

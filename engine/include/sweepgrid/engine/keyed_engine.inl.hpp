@@ -202,7 +202,7 @@ bool KeyedEngine<Scalar, Dim>::step_core() {
   Parts& p = *parts_;
   if (!p.objects().anything_queued()) p.order.rest();
   if (!p.core.step()) return false;
-  if (!p.filter) p.core.count_events(p.begins(), p.ends());
+  p.core.count_events(p.begins(), p.ends());
   return true;
 }
 
