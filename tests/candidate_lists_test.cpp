@@ -9,7 +9,7 @@
 
 #include <sweepgrid/engine/candidate_lists.hpp>
 
-namespace sweepgrid {
+namespace sweepgrid::candidate_lists_test {
 namespace {
 
 std::vector<ObjectId> others_of(const std::set<PairKey>& pairs, ObjectId object) {
@@ -101,4 +101,4 @@ TEST(CandidateLists, GiveBackWhatACrowdNeeded) {
 }
 
 }  // namespace
-}  // namespace sweepgrid
+}  // namespace sweepgrid::candidate_lists_test

@@ -12,7 +12,7 @@
 
 #include "envelope_play.hpp"
 
-namespace sweepgrid::oracle {
+namespace sweepgrid::oracle::envelope_jump_test {
 namespace {
 
 /// What a run cost, in counts.
@@ -186,4 +186,4 @@ TEST(Jump, LeavesTheStrideOfTheOthersAlone) {
 }
 
 }  // namespace
-}  // namespace sweepgrid::oracle
+}  // namespace sweepgrid::oracle::envelope_jump_test

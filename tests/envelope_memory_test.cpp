@@ -13,7 +13,7 @@
 #include "envelope_play.hpp"
 #include "failing_memory.hpp"
 
-namespace sweepgrid::oracle {
+namespace sweepgrid::oracle::envelope_memory_test {
 namespace {
 
 struct Setting {
@@ -230,4 +230,4 @@ TEST(EnvelopeMemory, OfACrowdGoesBack) {
 }
 
 }  // namespace
-}  // namespace sweepgrid::oracle
+}  // namespace sweepgrid::oracle::envelope_memory_test

@@ -5,7 +5,7 @@
 
 #include <sweepgrid/engine/object_speed.hpp>
 
-namespace sweepgrid {
+namespace sweepgrid::object_speed_test {
 namespace {
 
 const double kFade = ObjectSpeed::fade_of(1);
@@ -58,4 +58,4 @@ TEST(ObjectSpeed, TakesNoNoteOfUpdatesThatMoveNothing) {
 }
 
 }  // namespace
-}  // namespace sweepgrid
+}  // namespace sweepgrid::object_speed_test
