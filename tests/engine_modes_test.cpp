@@ -15,7 +15,7 @@
 #include "client_mode.hpp"
 #include "clients/scene.hpp"
 
-namespace sweepgrid::modes {
+namespace sweepgrid::modes::engine_modes_test {
 namespace {
 
 using clients::Regime;
@@ -203,4 +203,4 @@ TEST(EngineModes, NaNAndInvertedDenormalBoxesAreRefusedByEveryCall) {
 }
 
 }  // namespace
-}  // namespace sweepgrid::modes
+}  // namespace sweepgrid::modes::engine_modes_test
