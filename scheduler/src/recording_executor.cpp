@@ -41,9 +41,9 @@ std::int64_t RecordingExecutor::since(std::int64_t start) const {
 
 void RecordingExecutor::for_each(std::size_t count, const std::function<void(std::size_t)>& body) {
   if (!recording_) return runs_on_->for_each(count, body);
-  const std::uint32_t loop = loops_++;
   const std::size_t first = trace_.size();
   trace_.resize(first + count);
+  const std::uint32_t loop = loops_++;
   runs_on_->for_each(count, [&](std::size_t i) {
     const std::int64_t begin = now();
     body(i);

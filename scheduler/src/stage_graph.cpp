@@ -59,6 +59,8 @@ struct StageGraph::Impl {
   void run_stage(StageId id) noexcept;
   void run_tasks(Stage& stage);
   void run_recorded(StageId id, std::uint32_t task);
+  void run_graph() noexcept;
+  void fail() noexcept;
   void collect_trace();
 
   std::shared_ptr<Executor> executor;
@@ -91,7 +93,7 @@ void StageGraph::Impl::run_stage(StageId id) noexcept {
     stage.plan(stage.costs);
     run_tasks(stage);
   } catch (...) {
-    if (!failed.exchange(true, std::memory_order_acq_rel)) failure = std::current_exception();
+    fail();
   }
   stage.seconds = std::chrono::duration<double>(Clock::now() - begin).count();
 }
@@ -114,8 +116,29 @@ void StageGraph::Impl::run_recorded(StageId id, std::uint32_t task) {
   stage.records[task] = {id, task, stage.costs[task], executor->worker(), begin - start, since(begin)};
 }
 
+/// Keeps the exception that is being handled, if it is the first of the run.
+void StageGraph::Impl::fail() noexcept {
+  if (!failed.exchange(true, std::memory_order_acq_rel)) failure = std::current_exception();
+}
+
+// The nodes use this object, so whatever oneTBB throws, nobody leaves before they have ended.
+void StageGraph::Impl::run_graph() noexcept {
+  try {
+    for (const auto& stage : stages) {
+      if (!stage->waits) stage->node->try_put({});
+    }
+  } catch (...) {
+    fail();
+  }
+  try {
+    graph->wait_for_all();
+  } catch (...) {
+    fail();
+    graph->reset();  // a node may have counted some of those that it waits for
+  }
+}
+
 void StageGraph::Impl::collect_trace() {
-  trace.clear();
   for (const auto& stage : stages) trace.insert(trace.end(), stage->records.begin(), stage->records.end());
 }
 
@@ -165,23 +188,21 @@ void StageGraph::run() {
     stage->records.clear();
     stage->seconds = 0;
   }
+  impl.trace.clear();
   impl.failed.store(false, std::memory_order_relaxed);
+  impl.failure = nullptr;
   impl.start = impl.now();
 
   if (impl.graph) {
-    impl.executor->execute([&impl] {
-      for (const auto& stage : impl.stages) {
-        if (!stage->waits) stage->node->try_put({});
-      }
-      impl.graph->wait_for_all();
-    });
+    impl.executor->execute([&impl] { impl.run_graph(); });
   } else {
     // Stages wait only for earlier ones, so the order of adding is a topological one.
     for (StageId id = 0; id != impl.stages.size(); ++id) impl.run_stage(id);
   }
 
-  if (impl.recording) impl.collect_trace();
+  // Before anything else that may throw: the failure of a run must not be that of a later one.
   if (impl.failure) std::rethrow_exception(std::exchange(impl.failure, nullptr));
+  if (impl.recording) impl.collect_trace();
 }
 
 void StageGraph::record(bool on) { impl_->recording = on; }

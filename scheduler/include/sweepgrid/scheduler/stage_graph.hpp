@@ -35,7 +35,8 @@ class StageGraph {
 
   /// Runs every stage once and returns when all have ended. The heaviest tasks of a stage start first; idle workers
   /// steal. The first exception of a plan or body is rethrown after running tasks ended; stages that had not
-  /// started are skipped, and the graph can be run again.
+  /// started are skipped, the trace is empty, and the graph can be run again: nothing of a run that failed is left.
+  /// Beside that it throws only what allocation throws.
   void run();
 
   /// Whether run() keeps a record of every task. Off at first, and free when off.
