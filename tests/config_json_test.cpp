@@ -95,6 +95,8 @@ TEST(ConfigJson, RefusesWhatItDoesNotKnowAndNamesIt) {
       {R"({"cell": {"kinds": 1}})", "CellOptions has no member 'kinds'"},
       {R"({"cell": {"kind": "round"}})", "CellOptions::kind is \"round\""},
       {R"({"cell": {"segment_capacity": 3}})", "CellOptions::segment_capacity is 3, but must be"},
+      {R"({"cell": {"segment_capacity": 65537}})",
+       "is 65537, but must be a whole number of at least 4 and at most 65536"},
       {R"({"cell": {"integration": true}})", "CellOptions::integration is true"},
       {R"({"envelope": {"margins": 1}})", "EnvelopeOptions has no member 'margins'"},
       {R"({"envelope": {"margin": -1}})", "EnvelopeOptions::margin is -1, but must be finite and not negative"},

@@ -55,7 +55,6 @@ using CellSums = std::map<std::pair<std::uint64_t, PairKey>, int>;
 template <class Scalar, int Dim>
 void begin_step(Grid<Scalar, Dim>& grid, std::size_t blocks, bool dense) {
   grid.begin_step(blocks, dense);
-  for (std::size_t block = 0; block < blocks; ++block) grid.begin_block(block);
 }
 
 /// Gathers and drains all that was routed, and drops what is empty.

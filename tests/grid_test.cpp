@@ -108,18 +108,35 @@ TEST(OpQueues, KeepCallsByBlockAndShardInOrder) {
       }
     }
   }
-  queues.begin_block(0);
-  EXPECT_EQ(queues.written(0), 0u);
+  queues.note_step(0);
+  EXPECT_EQ(queues.written(0), 4u);
+  EXPECT_EQ(queues.list(0, 0).size(), 0u);
   EXPECT_EQ(queues.written(1), 8u);
+  queues.pass(1);
+  EXPECT_EQ(queues.written(0) + queues.written(1), 0u);
 }
 
-TEST(OpQueues, ReturnMemoryThatTheLatestStepDidNotUse) {
+TEST(OpQueues, RefuseMoreCallsThanTheyCanCount) {
+  EXPECT_NO_THROW(OpQueues::require_countable(0xffffffffU));
+  EXPECT_THROW(OpQueues::require_countable(0x100000000U), std::length_error);
+}
+
+TEST(OpQueues, ReturnMemoryThatTheLatest64StepsDidNotUse) {
   OpQueues queues;
   queues.reset(1, 1);
   queues.list(0, 0).known.resize(100'000);
-  queues.begin_block(0);
-  EXPECT_GE(queues.bytes(), 100'000 * sizeof(OpQueues::Known));
-  queues.begin_block(0);
+  for (int step = 0; step < 64; ++step) {
+    queues.note_step(0);
+    EXPECT_GE(queues.bytes(), 100'000 * sizeof(OpQueues::Known));
+    queues.list(0, 0).known.resize(10);
+  }
+  queues.note_step(0);
+  EXPECT_LT(queues.bytes(), 1000u);
+  queues.list(0, 0).fresh.resize(100'000);
+  queues.note_step(0);
+  queues.pass(63);
+  EXPECT_GE(queues.bytes(), 100'000 * sizeof(OpQueues::Fresh));
+  queues.pass(1);
   EXPECT_LT(queues.bytes(), 1000u);
 }
 

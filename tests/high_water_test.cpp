@@ -54,6 +54,21 @@ TEST(HighWater, IsNeverLessThanTheMostNorMuchOlder) {
   }
 }
 
+TEST(HighWater, ManyIdleStepsAreAsGoodAsOneAfterTheOther) {
+  std::mt19937 random(2);
+  HighWater one;
+  HighWater other;
+  for (int turn = 0; turn < 3000; ++turn) {
+    const std::size_t use = random() % 1000;
+    const std::size_t idle = random() % (turn % 10 == 0 ? 90 : 5);
+    one.note(use);
+    other.note(use);
+    for (std::size_t step = 0; step < idle; ++step) one.note(0);
+    other.pass(idle);
+    ASSERT_EQ(one.most(), other.most());
+  }
+}
+
 TEST(HighWater, OfSoManyThatNoneCanBeCountedKeepsAll) {
   HighWater water;
   water.note(~std::size_t{0});

@@ -284,11 +284,12 @@ TEST(SweepingPlane, TestsExactlyThePairsThatMeetOnTheFirstAxis) {
   EXPECT_EQ(oracle.counters().box_tests, 2U * 45U);
 }
 
-TEST(MakeCell, RefusesSegmentsBelowFourEndpoints) {
-  for (const int capacity : {-1, 0, 3}) {
+TEST(MakeCell, RefusesSegmentsOfTooFewOrTooManyEndpoints) {
+  for (const int capacity : {-1, 0, 3, 65537, 2'000'000'000}) {
     EXPECT_THROW((make_cell<float, 2>({CellKind::kSegmented, capacity})), std::invalid_argument) << capacity;
   }
   EXPECT_NO_THROW((make_cell<float, 2>({CellKind::kSegmented, 4})));
+  EXPECT_NO_THROW((make_cell<float, 2>({CellKind::kSegmented, 65536})));
 }
 
 }  // namespace

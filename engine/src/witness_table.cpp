@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <bit>
+#include <new>
 #include <string>
+#include <utility>
 
 #include <sweepgrid/sap/invariant.hpp>
 
@@ -18,7 +20,7 @@ std::size_t WitnessTable::find(std::uint64_t pair) const {
 
 void WitnessTable::apply(std::span<const OverlapDelta> deltas) {
   for (const OverlapDelta& delta : deltas) {
-    if (3 * (size_ + 1) > 2 * entries_.size()) rehash(std::max<std::size_t>(16, 2 * entries_.size()));
+    if (3 * (size_ + 1) > 2 * entries_.size()) rehash(room_for(size_ + 1));
     Entry& entry = entries_[find(delta.pair.bits())];
     if (entry.pair == 0) {
       entry.pair = delta.pair.bits();
@@ -33,6 +35,7 @@ void WitnessTable::apply(std::span<const OverlapDelta> deltas) {
 }
 
 void WitnessTable::finish(std::vector<PairKey>& begins, std::vector<PairKey>& ends) {
+  most_of_step_ = std::max(most_of_step_, size_);
   for (const std::uint64_t pair : touched_) {
     Entry& entry = entries_[find(pair)];
     const auto key = std::bit_cast<PairKey>(pair);
@@ -45,9 +48,35 @@ void WitnessTable::finish(std::vector<PairKey>& begins, std::vector<PairKey>& en
     entry.before = kUntouched;
     if (entry.count == 0) erase(pair);
   }
-  if (touched_.capacity() > 8 * touched_.size() + 64) touched_.shrink_to_fit();
-  touched_.clear();
-  if (entries_.size() > 64 && 16 * size_ < entries_.size()) rehash(std::bit_ceil(4 * size_ + 16));
+  most_touched_.recycle(touched_);
+}
+
+void WitnessTable::note_step() {
+  most_pairs_.note(std::exchange(most_of_step_, 0));
+  shrink();
+}
+
+void WitnessTable::pass(std::size_t steps) {
+  most_touched_.pass(steps);
+  most_touched_.release(touched_);
+  most_pairs_.pass(steps, size_);
+  shrink();
+}
+
+std::size_t WitnessTable::room_for(std::size_t pairs) {
+  return pairs == 0 ? 0 : std::bit_ceil(std::max<std::size_t>(16, pairs + (pairs + 1) / 2));
+}
+
+void WitnessTable::shrink() noexcept {
+  // One more, because apply() makes room before it knows whether the pair is new.
+  const std::size_t most = std::max(most_pairs_.most(), size_);
+  const std::size_t wanted = most == 0 ? 0 : room_for(most + 1);
+  if (entries_.size() <= wanted) return;
+  try {
+    rehash(wanted);
+  } catch (const std::bad_alloc&) {
+    // Then a later step tries again.
+  }
 }
 
 std::int32_t WitnessTable::count(PairKey pair) const {

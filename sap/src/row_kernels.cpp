@@ -15,7 +15,7 @@
 #include <array>
 #include <bit>
 #include <cstring>
-#include <memory>
+#include <memory_resource>
 #include <span>
 #include <stdexcept>
 
@@ -34,11 +34,9 @@ using Hits = std::uint32_t;
 /// For each op of a drain its object's place and what it hits. On the stack unless they are many.
 class Scratch {
  public:
-  explicit Scratch(std::size_t ops) : entries_(few_) {
-    if (ops > kFew) [[unlikely]] {
-      many_ = std::make_unique_for_overwrite<Entry[]>(ops);
-      entries_ = many_.get();
-    }
+  Scratch(std::size_t ops, std::pmr::memory_resource* memory) : entries_(few_) {
+    if (ops > kFew) [[unlikely]]
+      entries_ = static_cast<Entry*>(memory->allocate(ops * sizeof(Entry), alignof(Entry)));
   }
   std::uint32_t& place(std::size_t op) { return entries_[op].place; }
   Hits& hits(std::size_t op) { return entries_[op].hits; }
@@ -50,8 +48,19 @@ class Scratch {
   };
   static constexpr std::size_t kFew = 256;
   Entry few_[kFew];  // not initialised on purpose
-  std::unique_ptr<Entry[]> many_;
   Entry* entries_;
+};
+
+/// Scratch in the memory that the list of deltas lends.
+class LentScratch : public Scratch {
+ public:
+  LentScratch(std::size_t ops, DeltaList& deltas) : Scratch(ops, &deltas.scratch()), memory_(deltas.scratch()) {}
+  ~LentScratch() { memory_.reset(); }
+  LentScratch(const LentScratch&) = delete;
+  LentScratch& operator=(const LentScratch&) = delete;
+
+ private:
+  ScratchMemory& memory_;
 };
 
 /// How many ops of each kind a drain has.
@@ -238,11 +247,11 @@ struct Kernels {
   }
 
   static std::size_t drain(Block& block, Ops ops, DeltaList& deltas, SapCounters& counters) {
-    Scratch scratch(ops.size());
+    LentScratch scratch(ops.size(), deltas);
     Tally tally;
     const std::size_t refused = resolve(block, ops, scratch, tally);
     if (refused != ops.size()) return refused;
-    block.reserve(block.size() - tally.erases + tally.inserts);
+    block.reserve(std::uint64_t{block.size()} - tally.erases + tally.inserts);
     const std::size_t deltas_before = deltas.size();
     const std::uint32_t old_size = block.size();
     if (tally.erases != 0) {
@@ -271,7 +280,7 @@ struct Kernels {
 
   static void refresh(Block& block, const Bits* boxes, std::span<const std::uint32_t> moved, DeltaList& deltas,
                       SapCounters& counters) {
-    Scratch scratch(moved.size());
+    LentScratch scratch(moved.size(), deltas);
     const std::size_t deltas_before = deltas.size();
     for (std::uint32_t first = 0; first < block.size(); first += kLanes) {
       const Box old_boxes = Box::load(block, first);
@@ -302,11 +311,12 @@ struct Kernels {
   }
 
   static std::size_t transfer(Block& block, Ops ops) {
-    Scratch scratch(ops.size());
+    std::pmr::monotonic_buffer_resource heap;
+    Scratch scratch(ops.size(), &heap);
     Tally tally;
     const std::size_t refused = resolve(block, ops, scratch, tally);
     if (refused != ops.size()) return refused;
-    block.reserve(block.size() - tally.erases + tally.inserts);
+    block.reserve(std::uint64_t{block.size()} - tally.erases + tally.inserts);
     if (tally.erases != 0) remove(block, ops, scratch);
     append(block, ops, scratch);
     write(block, ops, scratch);
@@ -315,7 +325,7 @@ struct Kernels {
   }
 
   static void visit(const Block& block, const Bits* boxes, Visits visits, DeltaList& deltas, SapCounters& counters) {
-    Scratch scratch(visits.size());
+    LentScratch scratch(visits.size(), deltas);
     const std::size_t deltas_before = deltas.size();
     for (std::uint32_t first = 0; first < block.size(); first += kLanes) {
       const Box old_boxes = Box::load(block, first);

@@ -189,6 +189,10 @@ void StageGraph::run() {
     stage->seconds = 0;
   }
   impl.trace.clear();
+  if (!impl.recording && impl.trace.capacity() > 0) {
+    for (const auto& stage : impl.stages) TaskTrace().swap(stage->records);
+    TaskTrace().swap(impl.trace);
+  }
   impl.failed.store(false, std::memory_order_relaxed);
   impl.failure = nullptr;
   impl.start = impl.now();
@@ -210,5 +214,15 @@ const TaskTrace& StageGraph::trace() const { return impl_->trace; }
 std::size_t StageGraph::size() const { return impl_->stages.size(); }
 const std::string& StageGraph::name(StageId stage) const { return impl_->stages.at(stage)->name; }
 double StageGraph::seconds(StageId stage) const { return impl_->stages.at(stage)->seconds; }
+
+std::size_t StageGraph::bytes() const {
+  std::size_t total =
+      sizeof(Impl) + impl_->stages.capacity() * sizeof(impl_->stages[0]) + impl_->trace.capacity() * sizeof(TaskRecord);
+  for (const auto& stage : impl_->stages) {
+    total += sizeof(Stage) + stage->costs.capacity() * sizeof(stage->costs[0]) + stage->order.bytes() +
+             stage->records.capacity() * sizeof(TaskRecord);
+  }
+  return total;
+}
 
 }  // namespace sweepgrid

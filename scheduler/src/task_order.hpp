@@ -19,6 +19,10 @@ class TaskOrder {
 
   [[nodiscard]] std::size_t size() const { return tasks_.size(); }
   [[nodiscard]] std::uint32_t task(std::size_t place) const { return tasks_[place]; }
+  /// Heap bytes held.
+  [[nodiscard]] std::size_t bytes() const {
+    return (tasks_.capacity() + descending_.capacity()) * sizeof(std::uint32_t) + ranges_.capacity() * sizeof(Range);
+  }
 
  private:
   struct Range {

@@ -104,8 +104,8 @@ CLI::App* add_run(CLI::App& app, RunOptions& options, RunTexts& texts) {
   run->add_option("--cell-population", texts.cell_population,
                   "Objects per cell that a derived cell size aims at (default: auto)")
       ->check(whole_number_or_auto());
-  run->add_option("--segment-capacity", options.segment_capacity, "Endpoints per segment, at least 4 (segmented)")
-      ->check(CLI::Range(4, 1 << 30).description(""));
+  run->add_option("--segment-capacity", options.segment_capacity, "Endpoints per segment, 4 to 65536 (segmented)")
+      ->check(CLI::Range(4, 1 << 16).description(""));
   run->add_option("--reduction", options.reduction,
                   "How deltas become events: reporter (default; one cell reports each) or counts (of witnesses)")
       ->transform(CLI::CheckedTransformer(reductions_by_name()).description("reporter|counts"));

@@ -57,7 +57,7 @@ void from_json(const BasicJson& json, CellOptions& options) {
   options = {};
   JsonMembers<BasicJson> members(json, "CellOptions");
   members.read("kind", options.kind);
-  members.read("segment_capacity", options.segment_capacity, 4);
+  members.read("segment_capacity", options.segment_capacity, 4, CellOptions::kMostSegmentCapacity);
   members.read("integration", options.integration);
   members.finish();
 }

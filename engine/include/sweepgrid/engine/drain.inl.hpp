@@ -24,17 +24,15 @@ inline constexpr std::uint64_t kSmallestTask = 8192;
 
 template <class Scalar, int Dim>
 void EngineCore<Scalar, Dim>::plan_gather(std::vector<std::uint64_t>& costs) {
-  std::size_t used = 0;
+  gathers_.restart();
   for (const GridIndex grid : levels_.live()) {
     for (std::size_t shard = 0; shard < levels_.grid(grid).shards(); ++shard) {
-      if (used == gathers_.size()) gathers_.emplace_back();
-      gathers_[used].grid = grid;
-      gathers_[used].shard = shard;
-      ++used;
+      GatherTask& task = gathers_.add();
+      task.grid = grid;
+      task.shard = shard;
     }
   }
-  gathers_.resize(used);
-  costs.assign(used, 1);
+  costs.assign(gathers_.size(), 1);
   std::uint64_t calls = 0;
   for (const RouteBlock& block : blocks_) calls += block.calls;
   counters_.cell_ops = calls;
@@ -49,10 +47,7 @@ void EngineCore<Scalar, Dim>::gather(std::size_t index) {
   GatherTask& task = gathers_[index];
   GridType& grid = levels_.grid(task.grid);
   grid.gather(task.shard);
-  task.cuts.clear();
-  task.costs.clear();
-  task.met = 0;
-  task.ops = 0;
+  task.restart();
   std::uint64_t cost = 0;
   const auto cells = grid.active(task.shard);
   for (std::size_t i = 0; i < cells.size(); ++i) {
@@ -60,24 +55,25 @@ void EngineCore<Scalar, Dim>::gather(std::size_t index) {
     const std::uint64_t ops = cell.call_count + (dense_ ? cell.population : 0);
     const std::uint64_t own = ops * (8 + cell.population / 8) + 8;
     if (cost > 0 && cost + own > task_cost_) {
-      task.cuts.push_back(i);
-      task.costs.push_back(std::exchange(cost, 0));
+      task.cuts.items.push_back(i);
+      task.costs.items.push_back(std::exchange(cost, 0));
     }
     cost += own;
     task.met += static_cast<double>(ops) * cell.population;
     task.ops += ops;
   }
   if (cost > 0) {
-    task.cuts.push_back(cells.size());
-    task.costs.push_back(cost);
+    task.cuts.items.push_back(cells.size());
+    task.costs.items.push_back(cost);
   }
+  task.note_step();
 }
 
 // ---- drain: calls to overlap deltas, by active cell
 
 template <class Scalar, int Dim>
 void EngineCore<Scalar, Dim>::plan_drain(std::vector<std::uint64_t>& costs) {
-  std::size_t used = 0;
+  tasks_.restart();
   double met = 0;
   std::uint64_t ops = 0;
   for (const GatherTask& gathered : gathers_) {
@@ -85,38 +81,36 @@ void EngineCore<Scalar, Dim>::plan_drain(std::vector<std::uint64_t>& costs) {
     counters_.cells_drained += cells.size();
     if (gathered.grid == levels_.finest()) met += gathered.met, ops += gathered.ops;
     std::size_t first = 0;
-    for (std::size_t i = 0; i < gathered.cuts.size(); ++i) {
-      if (used == tasks_.size()) {
+    for (std::size_t i = 0; i < gathered.cuts.items.size(); ++i) {
+      DrainTask& task = tasks_.add([this] {
+        DrainTask made;
         // With witness counts, deltas are written a second time, by shard.
-        const std::size_t copies = counting() ? 2 : 1;
-        tasks_.emplace_back().out.deltas = DeltaList(budget_, copies * sizeof(OverlapDelta));
-      }
-      DrainTask& task = tasks_[used++];
+        made.out.deltas = DeltaList(budget_, (counting() ? 2 : 1) * sizeof(OverlapDelta));
+        return made;
+      });
       task.grid = gathered.grid;
       task.shard = gathered.shard;
-      task.cells = cells.subspan(first, gathered.cuts[i] - first);
-      first = gathered.cuts[i];
-      costs.push_back(gathered.costs[i]);
+      task.cells = cells.subspan(first, gathered.cuts.items[i] - first);
+      first = gathered.cuts.items[i];
+      costs.push_back(gathered.costs.items[i]);
     }
   }
-  tasks_.resize(used);
   if (!relocation_.wanted) regrid_.observe(met, ops);  // half a scene in new cells says little
 }
 
 template <class Scalar, int Dim>
 void EngineCore<Scalar, Dim>::drain(std::size_t index) {
   DrainTask& task = tasks_[index];
-  task.out.clear();
+  task.restart();
   levels_.grid(task.grid).drain(task.shard, task.cells, StepBoxes<Scalar, Dim>(objects_, steps_ + 1), task.out);
   task.out.deltas.charge();
   counting() ? partition(task) : report(task);
+  task.note_step();
 }
 
 // Deltas to events, while they are still in the worker's cache.
 template <class Scalar, int Dim>
 void EngineCore<Scalar, Dim>::report(DrainTask& task) {
-  task.begins.clear();
-  task.ends.clear();
   const Reporter<Scalar, Dim> reporter(objects_, levels_, steps_ + 1);
   constexpr std::size_t kAhead = 8;
   const auto& deltas = task.out.deltas;
@@ -127,11 +121,11 @@ void EngineCore<Scalar, Dim>::report(DrainTask& task) {
       if (i + kAhead < deltas.size()) reporter.prefetch(deltas[i + kAhead].pair);
       const PairKey pair = deltas[i].pair;
       const Verdict verdict = reporter.judge(pair, task.grid, run.cell);
-      if (verdict == Verdict::kBegin) task.begins.push_back(pair);
-      if (verdict == Verdict::kEnd) task.ends.push_back(pair);
+      if (verdict == Verdict::kBegin) task.begins.items.push_back(pair);
+      if (verdict == Verdict::kEnd) task.ends.items.push_back(pair);
     }
   }
-  budget_.charge((task.begins.size() + task.ends.size()) * event_bytes_);
+  budget_.charge((task.begins.items.size() + task.ends.items.size()) * event_bytes_);
 }
 
 // Deltas into slots by shard, while they are still in the worker's cache.
@@ -141,9 +135,9 @@ void EngineCore<Scalar, Dim>::partition(DrainTask& task) const {
   task.shard_end.assign(shards_.size() + 1, 0);
   for (const OverlapDelta& delta : deltas) ++task.shard_end[shard_of(delta.pair) + 1];
   for (std::size_t shard = 1; shard <= shards_.size(); ++shard) task.shard_end[shard] += task.shard_end[shard - 1];
-  task.by_shard.resize(deltas.size());
+  task.by_shard.items.resize(deltas.size());
   // Each entry walks from its shard's begin to its end, and so becomes what its name says.
-  for (const OverlapDelta& delta : deltas) task.by_shard[task.shard_end[shard_of(delta.pair)]++] = delta;
+  for (const OverlapDelta& delta : deltas) task.by_shard.items[task.shard_end[shard_of(delta.pair)]++] = delta;
   task.shard_end.pop_back();
 }
 
@@ -157,28 +151,28 @@ void EngineCore<Scalar, Dim>::plan_reduce(std::vector<std::uint64_t>& costs) {
 template <class Scalar, int Dim>
 void EngineCore<Scalar, Dim>::reduce(std::size_t index) {
   Shard& shard = shards_[index];
-  shard.begins.clear();
-  shard.ends.clear();
+  shard.restart();
   WitnessTable before;
   if (regridding_) std::swap(before, shard.witnesses);
   for (const DrainTask& task : tasks_) {
     const std::size_t first = index == 0 ? 0 : task.shard_end[index - 1];
-    shard.witnesses.apply(std::span(task.by_shard).subspan(first, task.shard_end[index] - first));
+    shard.witnesses.apply(std::span(task.by_shard.items).subspan(first, task.shard_end[index] - first));
   }
-  shard.witnesses.finish(shard.begins, shard.ends);
+  shard.witnesses.finish(shard.begins.items, shard.ends.items);
   if (regridding_) keep_changes(shard, before);
-  budget_.charge((shard.begins.size() + shard.ends.size()) * event_bytes_);
+  budget_.charge((shard.begins.items.size() + shard.ends.items.size()) * event_bytes_);
+  shard.note_step();
 }
 
 // After a regrid. Every pair began in the new grid. What the old grid's table does not know has really begun, and what
 // only it knows has ended.
 template <class Scalar, int Dim>
 void EngineCore<Scalar, Dim>::keep_changes(Shard& shard, const WitnessTable& before) {
-  std::erase_if(shard.begins, [&](PairKey pair) { return before.count(pair) > 0; });
+  std::erase_if(shard.begins.items, [&](PairKey pair) { return before.count(pair) > 0; });
   std::vector<PairKey> old_pairs;
   before.append_pairs(old_pairs);
   for (const PairKey pair : old_pairs) {
-    if (shard.witnesses.count(pair) == 0) shard.ends.push_back(pair);
+    if (shard.witnesses.count(pair) == 0) shard.ends.items.push_back(pair);
   }
 }
 

@@ -13,6 +13,9 @@
 #include <sweepgrid/engine/regrid.hpp>
 #include <sweepgrid/engine/reporter.hpp>
 #include <sweepgrid/engine/stats.hpp>
+#include <sweepgrid/engine/step_items.hpp>
+#include <sweepgrid/engine/step_list.hpp>
+#include <sweepgrid/engine/step_tasks.hpp>
 #include <sweepgrid/engine/witness_table.hpp>
 #include <sweepgrid/grid/grid_fit.hpp>
 #include <sweepgrid/grid/levels.hpp>
@@ -44,7 +47,8 @@ class EngineCore {
   [[nodiscard]] Executor& executor() const { return *executor_; }
 
   /// Runs the graph on what was queued, then lets erased ids be reused. Returns false when that is over the budget;
-  /// then, and when it throws, everything is as before: ops queued, pairs those of the latest step that was done.
+  /// then, and when it throws, everything is as before: ops queued, pairs those of the latest step that was done. Also
+  /// ends the step for all lists that are kept from step to step.
   [[nodiscard]] bool step();
   /// The same in two parts, for those who can fail between them: what run_step() has done, unless it returned false or
   /// threw, is made the latest step by commit_step(), or is taken back by cancel_step().
@@ -60,16 +64,17 @@ class EngineCore {
   /// The events of the latest step come in lists, in no order; with single reporters a list may name a pair twice.
   [[nodiscard]] std::size_t lists() const { return counting() ? shards_.size() : tasks_.size(); }
   [[nodiscard]] std::span<const PairKey> begins(std::size_t list) const {
-    return counting() ? shards_[list].begins : tasks_[list].begins;
+    return counting() ? shards_[list].begins.items : tasks_[list].begins.items;
   }
   [[nodiscard]] std::span<const PairKey> ends(std::size_t list) const {
-    return counting() ? shards_[list].ends : tasks_[list].ends;
+    return counting() ? shards_[list].ends.items : tasks_[list].ends.items;
   }
   /// To be told the numbers of events once they are free of doubles.
   void count_events(std::size_t begins, std::size_t ends);
   /// Pairs by the events of all steps so far.
   [[nodiscard]] std::size_t pair_count() const { return pairs_; }
 
+  /// In no order. Without cells (there was no memory for them) by sweeping all boxes, O(n log n) and more.
   [[nodiscard]] std::vector<PairKey> pairs() const;
 
   void validate() const;
@@ -83,45 +88,10 @@ class EngineCore {
   static constexpr double kMaxCells = double{1 << 24};
   static constexpr double kFewCells = 4096;
 
-  /// A block of objects as it is routed.
-  struct RouteBlock {
-    std::uint32_t first_granule = 0;
-    std::uint32_t last_granule = 0;
-    StepCounters counters;
-    std::uint64_t calls = 0;
-    std::vector<ObjectId> retired;
-    std::vector<std::pair<ObjectId, GridIndex>> relocated;  // at the end of the step
-  };
-
-  /// A shard of a grid with queued calls, and how its active cells are cut into tasks.
-  struct GatherTask {
-    GridIndex grid;
-    std::size_t shard;
-    std::vector<std::size_t> cuts;     // where a task's cells end
-    std::vector<std::uint64_t> costs;  // of the tasks
-    double met = 0;                    // residents that ops met, summed over ops
-    std::uint64_t ops = 0;
-  };
-
-  /// Active cells that one task drains, and what comes of it.
-  struct DrainTask {
-    GridIndex grid = 0;
-    std::size_t shard = 0;
-    std::span<const typename GridType::ActiveCell> cells;
-    DrainOutput<Scalar, Dim> out;
-    // With single reporters.
-    std::vector<PairKey> begins;
-    std::vector<PairKey> ends;
-    // With witness counts: deltas sorted by shard.
-    std::vector<OverlapDelta> by_shard;
-    std::vector<std::size_t> shard_end;
-  };
-
-  struct Shard {
-    WitnessTable witnesses;
-    std::vector<PairKey> begins;
-    std::vector<PairKey> ends;
-  };
+  using RouteBlock = step_tasks::Route;
+  using GatherTask = step_tasks::Gather;
+  using DrainTask = step_tasks::Drain<Scalar, Dim>;
+  using Shard = step_tasks::Shard;
 
   [[nodiscard]] bool counting() const { return config_.reduction == Reduction::kWitnessCounts; }
 
@@ -144,6 +114,8 @@ class EngineCore {
   void reduce(std::size_t shard);
   static void keep_changes(Shard& shard, const WitnessTable& before);
   void finish_step();
+  void pass_idle_step();
+  void pass_idle_steps();
   void take_back_step() noexcept;
   void restore_cells();
   void restore_cells_of(GridType& grid);
@@ -168,6 +140,7 @@ class EngineCore {
   void validate_pairs() const;
   template <class Visit>
   void for_each_pair(Visit&& visit) const;
+  [[nodiscard]] std::vector<PairKey> swept_pairs() const;
   [[nodiscard]] const BoxType& stepped_box(ObjectId object) const;
   [[nodiscard]] bool meet_in(PairKey pair, GridIndex grid, std::uint64_t cell) const;
 
@@ -192,13 +165,16 @@ class EngineCore {
   std::uint64_t pairs_ = 0;          // by the events
   bool idle_ = true;                 // the latest step had nothing to do
   bool regridding_ = false;          // with witness counts: this step inserts every object into a new grid
-  bool broken_ = false;              // a step was taken back, and there was no memory to restore the cells
+  bool broken_ = false;              // a step was taken back, and there was no memory to make the cells anew
   StepBudget budget_;
   std::size_t event_bytes_;
-  std::vector<RouteBlock> blocks_;
-  std::vector<GatherTask> gathers_;
+  StepList<std::uint32_t> marked_;  // granules that the step looks at
+  StepItems<RouteBlock> blocks_;
+  StepItems<GatherTask> gathers_;
   std::uint64_t task_cost_ = 1;
-  std::vector<DrainTask> tasks_;
+  StepItems<DrainTask> tasks_;
+  // Idle steps since the latest one that had anything to do, as far as lists do not know of them yet.
+  std::size_t idle_steps_ = 0;
   std::vector<Shard> shards_;
   int shard_shift_ = 64;
 

@@ -83,8 +83,7 @@ bool EngineCore<Scalar, Dim>::run_step() {
   regridding_ = false;
   idle_ = !objects_.anything_queued();
   if (idle_) {
-    tasks_.clear();
-    for (Shard& shard : shards_) shard.begins.clear(), shard.ends.clear();
+    pass_idle_step();
   } else {
     budget_.start(config_.step_bytes.value_or(StepBudget::kUnlimited));
     try {
@@ -112,7 +111,7 @@ void EngineCore<Scalar, Dim>::cancel_step() noexcept {
 template <class Scalar, int Dim>
 void EngineCore<Scalar, Dim>::finish_step() {
   std::size_t retired = 0;
-  for (const RouteBlock& block : blocks_) retired += block.retired.size();
+  for (const RouteBlock& block : blocks_) retired += block.retired.items.size();
   objects_.reserve_free(retired);
   for (const DrainTask& task : tasks_) {
     counters_.cells += task.out.counters;
@@ -126,13 +125,40 @@ void EngineCore<Scalar, Dim>::commit_step() noexcept {
   if (idle_) return;
   for (RouteBlock& block : blocks_) {
     counters_ += block.counters;
-    objects_.free_ids(block.retired);
-    block.retired.clear();  // lest a step that fails before it routes frees them again
-    for (const auto& [object, home] : block.relocated) objects_.record(object).grid = home;
+    objects_.free_ids(block.retired.items);
+    for (const auto& [object, home] : block.relocated.items) objects_.record(object).grid = home;
+    block.note_step();
+    block.restart();  // lest a step that fails before it routes frees ids again
   }
   last_changed_ = counters_.inserts + counters_.updates + counters_.erases;
   if (levels_.live().size() > 1)
     objects_.set_widest(std::min(objects_.widest(), levels_.drop_empty(!relocation_.wanted)));
+  marked_.note_step();
+  blocks_.finish();
+  gathers_.finish();
+  tasks_.finish();
+  for (const GridIndex grid : levels_.live()) levels_.grid(grid).note_step();
+}
+
+// An idle step takes next to no time, so lists are told of idle steps only now and then.
+template <class Scalar, int Dim>
+void EngineCore<Scalar, Dim>::pass_idle_step() {
+  constexpr std::size_t kIdleSteps = 8;  // a part of HighWater::kSteps
+  tasks_.restart();
+  for (Shard& shard : shards_) shard.restart();
+  if (++idle_steps_ == kIdleSteps) pass_idle_steps();
+}
+
+template <class Scalar, int Dim>
+void EngineCore<Scalar, Dim>::pass_idle_steps() {
+  if (idle_steps_ == 0) return;
+  const std::size_t steps = std::exchange(idle_steps_, 0);
+  marked_.pass(steps);
+  blocks_.pass(steps);
+  gathers_.pass(steps);
+  tasks_.pass(steps);
+  for (Shard& shard : shards_) shard.pass(steps);
+  for (const GridIndex grid : levels_.live()) levels_.grid(grid).pass(steps);
 }
 
 template <class Scalar, int Dim>
@@ -148,7 +174,7 @@ void EngineCore<Scalar, Dim>::count_events(std::size_t begins, std::size_t ends)
 
 template <class Scalar, int Dim>
 std::vector<PairKey> EngineCore<Scalar, Dim>::pairs() const {
-  if (broken_) throw std::logic_error("sweepgrid: pairs after a step() that ran out of memory, before another step()");
+  if (broken_) return swept_pairs();
   std::vector<PairKey> pairs;
   if (counting()) {
     for (const Shard& shard : shards_) shard.witnesses.append_pairs(pairs);
@@ -179,14 +205,9 @@ Stats EngineCore<Scalar, Dim>::stats() const {
     stats.bytes_queues += grid.queue_bytes();
   }
   stats.bytes_objects = objects_.bytes();
-  for (const DrainTask& task : tasks_) {
-    stats.bytes_queues += (task.out.deltas.capacity() + task.by_shard.capacity()) * sizeof(OverlapDelta) +
-                          (task.begins.capacity() + task.ends.capacity()) * sizeof(PairKey);
-  }
-  for (const Shard& shard : shards_) {
-    stats.bytes_witnesses +=
-        shard.witnesses.bytes() + (shard.begins.capacity() + shard.ends.capacity()) * sizeof(PairKey);
-  }
+  stats.bytes_queues += marked_.bytes() + blocks_.bytes() + gathers_.bytes() + tasks_.bytes() + graph_->bytes();
+  stats.bytes_witnesses += shards_.capacity() * sizeof(Shard);
+  for (const Shard& shard : shards_) stats.bytes_witnesses += shard.bytes();
   return stats;
 }
 

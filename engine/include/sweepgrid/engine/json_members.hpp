@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -51,19 +52,25 @@ class JsonMembers {
       value = found->template get<bool>();
     }
   }
-  /// A whole number, at least `least`.
+  /// A whole number from `least` to `most`.
   template <class Integer>
   requires std::is_integral_v<Integer>
-  void read(const char* name, Integer& value, Integer least) {
+  void read(const char* name, Integer& value, Integer least, Integer most = std::numeric_limits<Integer>::max()) {
     const BasicJson* found = find(name);
     if (found == nullptr) return;
     const auto fits = [&](auto number) {
-      return std::in_range<Integer>(number) && static_cast<Integer>(number) >= least;
+      return std::in_range<Integer>(number) && static_cast<Integer>(number) >= least &&
+             static_cast<Integer>(number) <= most;
     };
     const bool good = found->is_number_unsigned()  ? fits(found->template get<std::uint64_t>())
                       : found->is_number_integer() ? fits(found->template get<std::int64_t>())
                                                    : false;
-    if (!good) refuse(name, *found, "a whole number of at least " + std::to_string(least));
+    const bool open = most == std::numeric_limits<Integer>::max();
+    if (!good) {
+      refuse(
+          name, *found,
+          "a whole number of at least " + std::to_string(least) + (open ? "" : " and at most " + std::to_string(most)));
+    }
     value = found->template get<Integer>();
   }
   /// A finite number, not negative; or, without `zero_too`, positive.

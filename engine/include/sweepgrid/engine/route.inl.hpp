@@ -24,10 +24,12 @@ inline constexpr double kDenseShare = 0.4;
 
 template <class Scalar, int Dim>
 void EngineCore<Scalar, Dim>::plan_route(std::vector<std::uint64_t>& costs) {
+  pass_idle_steps();
   follow_scene();
   objects_.nothing_queued();
   const std::uint32_t granules = objects_.granules();
-  std::vector<std::uint32_t> marked;
+  marked_.restart();
+  std::vector<std::uint32_t>& marked = marked_.items;
   for (std::uint32_t granule = 0; granule < granules; ++granule) {
     if (regridding_ || relocating(granule) || objects_.granule_marked(granule)) marked.push_back(granule);
   }
@@ -36,16 +38,14 @@ void EngineCore<Scalar, Dim>::plan_route(std::vector<std::uint64_t>& costs) {
   const auto workers = static_cast<std::size_t>(executor_->concurrency());
   const bool small = workers == 1 || marked.size() < 8;
   const std::size_t wanted = small ? 1 : std::min(marked.size(), engine_core::kBlocksPerWorker * workers);
-  blocks_.resize(wanted);
+  blocks_.restart();
   for (std::size_t b = 0; b < wanted; ++b) {
-    RouteBlock& block = blocks_[b];
+    RouteBlock& block = blocks_.add();
+    block.restart();
     const std::size_t first = b * marked.size() / wanted;
     const std::size_t end = (b + 1) * marked.size() / wanted;
     block.first_granule = marked[first];
     block.last_granule = marked[end - 1];
-    block.counters = StepCounters{};
-    block.retired.clear();
-    block.relocated.clear();
     costs.push_back(end - first);
   }
   for (const GridIndex grid : levels_.live()) levels_.grid(grid).begin_step(wanted, dense_, &budget_);
@@ -72,12 +72,10 @@ bool EngineCore<Scalar, Dim>::most_changed(const std::vector<std::uint32_t>& gra
 template <class Scalar, int Dim>
 void EngineCore<Scalar, Dim>::route(std::size_t block) {
   RouteBlock& out = blocks_[block];
-  for (const GridIndex grid : levels_.live()) levels_.grid(grid).begin_block(block);
   for (std::uint32_t granule = out.first_granule; granule <= out.last_granule; ++granule) {
     if (!regridding_ && !relocating(granule) && !objects_.granule_marked(granule)) continue;
     route_granule(block, granule);
   }
-  out.calls = 0;
   for (const GridIndex grid : levels_.live()) {
     levels_.grid(grid).end_block(block);
     out.calls += levels_.grid(grid).calls(block);
@@ -140,8 +138,8 @@ inline void EngineCore<Scalar, Dim>::route_object(std::size_t block, ObjectId ob
       show(block, object, record.grid, nullptr, &record.box);
     }
     if (erased) {
+      out.retired.items.push_back(object);
       objects_.retire(object);
-      out.retired.push_back(object);
       return;
     }
     state = Objects::kLive;
@@ -194,7 +192,7 @@ void EngineCore<Scalar, Dim>::relocate(std::size_t block, ObjectId object, const
   if (home == record.grid) return;
   levels_.grid(record.grid).route_detach(block, object, record.box);
   levels_.grid(home).route_attach(block, object, record.box);
-  out.relocated.emplace_back(object, home);
+  out.relocated.items.emplace_back(object, home);
 }
 
 }  // namespace sweepgrid

@@ -11,6 +11,12 @@ namespace sweepgrid {
 // What becomes of a step that is over its budget, or that threw: ops are queued again, and the cells, in which some had
 // been applied already, are made anew from the boxes of the step before.
 
+/// Whether the latest step knew of an object of this state.
+template <class Scalar, int Dim>
+[[nodiscard]] bool stepped(std::uint8_t state) {
+  return state != 0 && (state & ObjectTable<Scalar, Dim>::kInserted) == 0;
+}
+
 /// For as long as it lives, the boxes of all objects are those of the latest step.
 template <class Scalar, int Dim>
 class SteppedBoxes {
@@ -22,11 +28,7 @@ class SteppedBoxes {
   SteppedBoxes(const SteppedBoxes&) = delete;
   SteppedBoxes& operator=(const SteppedBoxes&) = delete;
 
-  /// Whether the latest step knew of the object.
-  [[nodiscard]] bool has(ObjectId object) const {
-    const std::uint8_t state = objects_.state(object);
-    return state != 0 && (state & Objects::kInserted) == 0;
-  }
+  [[nodiscard]] bool has(ObjectId object) const { return stepped<Scalar, Dim>(objects_.state(object)); }
 
  private:
   void exchange() {
@@ -43,16 +45,13 @@ template <class Scalar, int Dim>
 void EngineCore<Scalar, Dim>::take_back_step() noexcept {
   broken_ = true;
   const std::uint64_t step = steps_ + 1;
-  try {
-    std::vector<ObjectId> gone;  // inserted and erased since the latest step: of these there is nothing to take back
-    for (const RouteBlock& block : blocks_) {
-      for (const ObjectId object : block.retired) {
-        if (objects_.record(object).changed_at != step) gone.push_back(object);
+  for (const RouteBlock& block : blocks_) {
+    for (const ObjectId object : block.retired.items) {
+      // Inserted and erased since the latest step.
+      if (objects_.record(object).changed_at != step) {
+        objects_.requeue(object, Objects::kLive | Objects::kInserted | Objects::kErased);
       }
     }
-    objects_.free_ids(gone);
-  } catch (const std::bad_alloc&) {
-    // Then these ids are not used again.
   }
   for (ObjectId object = 0; object < objects_.bound(); ++object) {
     const Record& record = objects_.record(object);
@@ -69,7 +68,7 @@ void EngineCore<Scalar, Dim>::take_back_step() noexcept {
   try {
     restore_cells();
   } catch (...) {
-    // The next step tries again.
+    // The next step tries again; until then pairs() does without cells.
   }
 }
 
@@ -78,7 +77,7 @@ void EngineCore<Scalar, Dim>::restore_cells() {
   regridding_ = false;
   relocation_ = {};
   levels_.clear();
-  for (Shard& shard : shards_) shard = {};
+  for (Shard& shard : shards_) shard = Shard();
   const SteppedBoxes boxes(objects_);
   const auto scene = sample(GridFit<Scalar, Dim>::sample_size(objects_.size()));
   const auto result = fit(scene);
@@ -89,8 +88,7 @@ void EngineCore<Scalar, Dim>::restore_cells() {
     regrid_.fitted(result.met, objects_.size());
     gridded_ = true;
   }
-  for (const GridIndex grid : levels_.live())
-    levels_.grid(grid).begin_step(1, false), levels_.grid(grid).begin_block(0);
+  for (const GridIndex grid : levels_.live()) levels_.grid(grid).begin_step(1, false);
   for (ObjectId object = 0; object < objects_.bound(); ++object) {
     if (!boxes.has(object)) continue;
     Record& record = objects_.record(object);
@@ -123,10 +121,28 @@ void EngineCore<Scalar, Dim>::restore_cells_of(GridType& grid) {
   }
   if (!counting()) return;
   for (Shard& shard : shards_) {
-    shard.witnesses.finish(shard.begins, shard.ends);
+    shard.witnesses.finish(shard.begins.items, shard.ends.items);
     shard.begins = {};
     shard.ends = {};
   }
+}
+
+// The pairs of the latest step from the boxes alone, for while there are no cells.
+template <class Scalar, int Dim>
+std::vector<PairKey> EngineCore<Scalar, Dim>::swept_pairs() const {
+  std::vector<CellOp<Scalar, Dim>> ops;
+  ops.reserve(objects_.size());
+  for (ObjectId object = 0; object < objects_.bound(); ++object) {
+    if (!stepped<Scalar, Dim>(objects_.state(object))) continue;
+    ops.push_back({object, OpKind::kInsert, OrderedBox<Scalar, Dim>(stepped_box(object))});
+  }
+  DeltaList deltas;
+  SapCounters unused;
+  make_cell<Scalar, Dim>({CellKind::kBatch})->drain(ops, deltas, unused);
+  std::vector<PairKey> pairs;
+  pairs.reserve(deltas.size());
+  for (const OverlapDelta& delta : deltas) pairs.push_back(delta.pair);
+  return pairs;
 }
 
 }  // namespace sweepgrid

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include <sweepgrid/sap/high_water.hpp>
 #include <sweepgrid/sap/ids.hpp>
 #include <sweepgrid/sap/overlap_delta.hpp>
 
@@ -28,6 +29,11 @@ class WitnessTable {
   /// pairs at zero. Throws InvariantError (E1) for a count below zero, which only a bug in a cell can cause.
   void finish(std::vector<PairKey>& begins, std::vector<PairKey>& ends);
 
+  /// Ends a step for the table's memory: what is beyond HighWater goes back. `steps`: so many steps in which nothing
+  /// changed. Throws nothing.
+  void note_step();
+  void pass(std::size_t steps);
+
   /// Number of cells in which `pair` overlaps. O(1).
   [[nodiscard]] std::int32_t count(PairKey pair) const;
 
@@ -48,6 +54,9 @@ class WitnessTable {
     std::int32_t before = kUntouched;  // count at the beginning of the step, once touched
   };
 
+  /// The size of a table for so many pairs.
+  [[nodiscard]] static std::size_t room_for(std::size_t pairs);
+  void shrink() noexcept;
   [[nodiscard]] std::size_t find(std::uint64_t pair) const;
   void rehash(std::size_t capacity);
   void erase(std::uint64_t pair);
@@ -55,6 +64,9 @@ class WitnessTable {
   std::vector<Entry> entries_;  // a power of two, at most 2/3 full
   std::size_t size_ = 0;
   std::vector<std::uint64_t> touched_;
+  std::size_t most_of_step_ = 0;  // pairs
+  HighWater most_pairs_;
+  HighWater most_touched_;
 };
 
 }  // namespace sweepgrid

@@ -39,6 +39,15 @@ class Cell {
     other_->cell->drain(ops, deltas, counters);
   }
 
+  /// Kind::visit(). `residents`: memory for them.
+  void visit(std::span<const typename Kind::Visit> visits, std::vector<typename Kind::Resident>& residents,
+             DeltaList& deltas, SapCounters& counters) const {
+    if (has_rows()) return rows_.visit(visits, deltas, counters);
+    residents.clear();
+    if (!visits.empty()) other_->cell->append_residents(residents);
+    Kind::visit(residents, visits, deltas, counters);
+  }
+
   /// Precondition: has_rows().
   [[nodiscard]] RowCell<Scalar, Dim>& rows() { return rows_; }
 

@@ -70,6 +70,17 @@ class CellDirectory {
     }
   }
 
+  /// Calls `visit` with the id of every cell, to be changed, in no order.
+  template <class Visit>
+  void for_each_id(Visit&& visit) {
+    for (const Bucket& bucket : buckets_) {
+      if (!bucket.block) continue;
+      for (CellId& id : bucket.block->cells) {
+        if (id != kAbsent) visit(id);
+      }
+    }
+  }
+
   [[nodiscard]] std::size_t bytes() const { return buckets_.capacity() * sizeof(Bucket) + blocks_ * sizeof(Block); }
 
  private:

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <sweepgrid/grid/cell.hpp>
@@ -35,13 +37,57 @@ struct DrainOutput {
   std::vector<typename SweepAndPrune<Scalar, Dim>::Visit> visits;
   std::vector<typename SweepAndPrune<Scalar, Dim>::Visit> sides;
   std::vector<CellOp<Scalar, Dim>> passing;
+  RowCell<Scalar, Dim> passing_rows;
 
   void clear() {
     deltas.clear();
     runs.clear();
-    emptied.clear();
+    most_emptied_.release(emptied);
     counters = SapCounters{};
   }
+
+  /// A cell is drained of so many calls and residents.
+  void note_cell(std::size_t calls, std::size_t population) { in_cell_ = std::max(in_cell_, calls + population); }
+  /// Ends a step: what is told of it is forgotten but for emptied cells and counters, and memory beyond what HighWater
+  /// allows goes back.
+  void note_step() {
+    deltas.note_step();
+    most_runs_.recycle(runs);
+    most_emptied_.note(emptied.size());
+    most_in_cell_.note(std::exchange(in_cell_, 0));
+    release_scratch();
+  }
+  /// As note_step() for so many steps in which nothing was drained.
+  void pass(std::size_t steps) {
+    clear();
+    deltas.pass(steps);
+    most_runs_.pass(steps);
+    most_runs_.release(runs);
+    most_emptied_.pass(steps);
+    most_emptied_.release(emptied);
+    most_in_cell_.pass(steps);
+    release_scratch();
+  }
+
+  /// Heap bytes held.
+  [[nodiscard]] std::size_t bytes() const {
+    const auto of = [](const auto& list) { return list.capacity() * sizeof(list[0]); };
+    return deltas.bytes() + of(runs) + of(emptied) + of(ops) + of(transfers) + of(residents) + of(refresh.boxes) +
+           of(refresh.moved) + of(visits) + of(sides) + of(passing) + passing_rows.bytes();
+  }
+
+ private:
+  // One number for all that is filled anew for each cell: none is longer than the cell's calls and residents.
+  void release_scratch() {
+    const auto release = [this](auto&... lists) { (most_in_cell_.release(lists), ...); };
+    release(ops, transfers, residents, refresh.boxes, refresh.moved, visits, sides, passing);
+    if (passing_rows.bytes() > most_in_cell_.allowed() * sizeof(CellOp<Scalar, Dim>)) passing_rows = {};
+  }
+
+  std::size_t in_cell_ = 0;
+  HighWater most_runs_;
+  HighWater most_emptied_;
+  HighWater most_in_cell_;
 };
 
 /// The superstructure of section 3.1 with one cell size: cells that exist where objects are, and who must hear of which
@@ -75,8 +121,7 @@ class Grid {
   /// calls are charged to, kCallBytes for each; null: nothing.
   void begin_step(std::size_t blocks, bool dense, StepBudget* budget = nullptr);
   static constexpr std::uint64_t kCallBytes = 16;
-  /// To be called before the first op of the block is routed, and after the last.
-  void begin_block(std::size_t block) { ops_.begin_block(block), late_.begin_block(block); }
+  /// To be called after the last op of the block is routed.
   void end_block(std::size_t block) { look_up(block); }
   /// Calls that the block has queued. Precondition: end_block().
   [[nodiscard]] std::size_t calls(std::size_t block) const { return ops_.written(block) + late_.written(block); }
@@ -106,6 +151,10 @@ class Grid {
 
   /// Drops those of the cells that are still empty. Not beside other calls.
   void drop_empty(std::size_t shard, std::span<const std::uint32_t> cells);
+  /// Ends a step: memory that the latest 64 steps did not need goes back. `idle`: or so many steps in which nothing was
+  /// queued. Not beside other calls; throws nothing.
+  void note_step();
+  void pass(std::size_t idle);
 
   /// Calls `visit` with every cell, in no order.
   template <class Visit>
@@ -134,6 +183,10 @@ class Grid {
     std::vector<std::uint32_t> queue;  // by id; scratch of gather, all 0 outside it
     std::vector<Call> calls;           // by cell
     std::vector<ActiveCell> active;
+    std::size_t cells_used = 0;  // in this step, before those that are empty were dropped
+    HighWater most_cells;
+    HighWater most_calls;
+    HighWater most_active;
   };
 
   [[nodiscard]] std::size_t shard_of(std::uint64_t code) const {
@@ -152,6 +205,8 @@ class Grid {
   void look_up(std::size_t block);
   CellId locate(Shard& shard, const OpQueues::Fresh& op);
   CellId make_cell_at(Shard& shard, std::uint64_t code, CellId& place);
+  static void release_cells(Shard& shard) noexcept;
+  static void compact(Shard& shard);
   template <class Boxes>
   void drain_cell(Shard& shard, const ActiveCell& active, const Boxes& boxes, Output& out);
   template <class Boxes>

@@ -93,7 +93,9 @@ void Grid<Scalar, Dim>::gather(std::size_t index) {
     first += active.call_count;
     shard.queue[active.cell] = active.first_call;
   }
-  if (total > shard.calls.capacity() || 2 * total < shard.calls.capacity()) {
+  OpQueues::require_countable(total);
+  shard.cells_used = shard.directory.size();
+  if (total > shard.calls.capacity()) {
     std::vector<Call>().swap(shard.calls);
     shard.calls.reserve(total + total / 8);
   }
@@ -108,6 +110,7 @@ void Grid<Scalar, Dim>::gather(std::size_t index) {
         if (op.cell != CellDirectory<Dim>::kAbsent) shard.calls[shard.queue[op.cell]++] = {op.object, op.call};
       }
     }
+    queues->note_step(index);
   }
   for (const ActiveCell& active : shard.active) shard.queue[active.cell] = 0;
 }
@@ -139,6 +142,7 @@ void Grid<Scalar, Dim>::drain_cell(Shard& shard, const ActiveCell& active, const
   const bool judged = options_.kind == CellKind::kAuto && cell.size() >= KindChoice::kManyObjects / 2;
   const SapCounters counters_before = judged ? out.counters : SapCounters{};
   const auto calls = std::span<const Call>(shard.calls).subspan(active.first_call, active.call_count);
+  out.note_cell(calls.size(), cell.size());
   const std::size_t heard = take_ops(calls, boxes, out);
   const std::size_t ops =
       heard == calls.size() ? apply_ops(cell, boxes, out) : drain_visited(cell, calls.subspan(heard), boxes, out);
@@ -225,8 +229,9 @@ void Grid<Scalar, Dim>::take_visits(std::span<const Call> calls, const Boxes& bo
     visit.object = object;
     visit.was = call != CellCall::kVisitIs;
     visit.is = call != CellCall::kVisitWas;
-    if (visit.was) visit.before = Ordered(boxes.before(object));
-    if (visit.is) visit.after = Ordered(boxes.after(object));
+    // A side that there is not has the box of the other one, lest anybody read what was never written.
+    visit.before = Ordered(visit.was ? boxes.before(object) : boxes.after(object));
+    visit.after = visit.is ? Ordered(boxes.after(object)) : visit.before;
     out.visits.push_back(visit);
   }
 }
@@ -245,11 +250,11 @@ std::size_t Grid<Scalar, Dim>::drain_visited(CellType& cell, std::span<const Cal
     if (dense_) ask_residents(cell, boxes, out);
     ops = out.ops.size();
     if (ops == 0) {
-      cell.kind().visit(out.visits, out.deltas, out.counters);
+      cell.visit(out.visits, out.residents, out.deltas, out.counters);
     } else {
-      cell.kind().visit(sides(out.visits, true, out), out.deltas, out.counters);
+      cell.visit(sides(out.visits, true, out), out.residents, out.deltas, out.counters);
       cell.drain(out.ops, out.deltas, out.counters);
-      cell.kind().visit(sides(out.visits, false, out), out.deltas, out.counters);
+      cell.visit(sides(out.visits, false, out), out.residents, out.deltas, out.counters);
     }
   }
   if (!out.transfers.empty()) cell.kind().transfer(out.transfers, out.counters);
@@ -272,9 +277,8 @@ std::size_t Grid<Scalar, Dim>::refresh_visited(CellType& cell, const Boxes& boxe
       out.passing.push_back(
           {op.object, OpKind::kInsert, were ? OrderedBox<Scalar, Dim>(boxes.before(op.object)) : op.box});
     }
-    RowCell<Scalar, Dim> rows;
-    rows.transfer(out.passing, out.counters);
-    rows.visit(sides(out.visits, were, out), out.deltas, out.counters);
+    out.passing_rows.refill(out.passing);
+    out.passing_rows.visit(sides(out.visits, were, out), out.deltas, out.counters);
   };
   meet(goers, true);
   cell.drain(goers, out.deltas, out.counters);
@@ -305,11 +309,60 @@ void Grid<Scalar, Dim>::drop_empty(std::size_t index, std::span<const std::uint3
     shard.cells[id] = CellType(0, options_);
     shard.free.push_back(id);
   }
-  if (shard.directory.size() == 0) {
-    std::vector<CellType>().swap(shard.cells);
-    std::vector<std::uint32_t>().swap(shard.queue);
-    std::vector<CellId>().swap(shard.free);
+}
+
+// ---- memory
+
+template <class Scalar, int Dim>
+void Grid<Scalar, Dim>::note_step() {
+  for (Shard& shard : shards_) {
+    shard.most_calls.recycle(shard.calls);
+    shard.most_active.recycle(shard.active);
+    shard.most_cells.note(std::exchange(shard.cells_used, 0));
+    release_cells(shard);
   }
+}
+
+template <class Scalar, int Dim>
+void Grid<Scalar, Dim>::pass(std::size_t idle) {
+  ops_.pass(idle);
+  late_.pass(idle);
+  for (Shard& shard : shards_) {
+    shard.most_calls.pass(idle);
+    shard.most_calls.release(shard.calls);
+    shard.most_active.pass(idle);
+    shard.most_active.release(shard.active);
+    shard.most_cells.pass(idle, shard.directory.size());
+    release_cells(shard);
+  }
+}
+
+template <class Scalar, int Dim>
+void Grid<Scalar, Dim>::release_cells(Shard& shard) noexcept {
+  const std::size_t allowed = std::max(shard.most_cells.allowed(), 2 * shard.directory.size());
+  if (shard.cells.capacity() <= allowed && shard.queue.capacity() <= allowed && shard.free.capacity() <= allowed)
+    return;
+  try {
+    compact(shard);
+  } catch (const std::bad_alloc&) {
+    // Then another step tries again.
+  }
+}
+
+// Gives the cells of a shard the ids that are lowest. Nobody keeps ids from step to step.
+template <class Scalar, int Dim>
+void Grid<Scalar, Dim>::compact(Shard& shard) {
+  const std::size_t count = shard.directory.size();
+  std::vector<CellType> cells;
+  std::vector<std::uint32_t> queue(count, 0);
+  cells.reserve(count);
+  shard.directory.for_each_id([&](CellId& id) {
+    cells.push_back(std::move(shard.cells[id]));
+    id = static_cast<CellId>(cells.size() - 1);
+  });
+  shard.cells.swap(cells);
+  shard.queue.swap(queue);
+  std::vector<CellId>().swap(shard.free);
 }
 
 // ---- looking at cells

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <stdexcept>
 
 #include <sweepgrid/grid/grid.inl.hpp>
 #include <sweepgrid/grid/levels.hpp>
@@ -41,6 +42,7 @@ template <class Scalar, int Dim>
 GridIndex Levels<Scalar, Dim>::add(const GridSpec<Scalar, Dim>& spec, double widest) {
   std::size_t index = 0;
   while (index < grids_.size() && grids_[index]) ++index;
+  if (index == kNone) throw std::length_error("sweepgrid: more than 255 grids");
   if (index == grids_.size()) grids_.emplace_back(), widest_.emplace_back();
   grids_[index] = std::make_unique<GridType>(spec, cells_, shards_);
   widest_[index] = widest;

@@ -2,8 +2,11 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
+#include <stdexcept>
 #include <vector>
 
+#include <sweepgrid/sap/high_water.hpp>
 #include <sweepgrid/sap/ids.hpp>
 
 namespace sweepgrid {
@@ -46,11 +49,13 @@ class OpQueues {
   struct List {
     std::vector<Known> known;
     std::vector<Fresh> fresh;
+    HighWater most_known;
+    HighWater most_fresh;
 
     [[nodiscard]] std::size_t size() const { return known.size() + fresh.size(); }
   };
 
-  /// Gives the queues `blocks` writers and `shards` readers. Each writer is to begin_block() before it writes.
+  /// Gives the queues `blocks` writers and `shards` readers.
   void reset(std::size_t blocks, std::size_t shards) {
     if (blocks == blocks_ && shards == shards_) return;
     lists_.resize(blocks * shards);
@@ -58,10 +63,29 @@ class OpQueues {
     shards_ = shards;
   }
 
-  /// Empties the lists of a writer. Memory that the latest step did not use is returned, but for a little slack.
-  void begin_block(std::size_t block) {
-    for (std::size_t shard = 0; shard < shards_; ++shard)
-      clear(list(block, shard).known), clear(list(block, shard).fresh);
+  /// Ends the step of a reader: its lists are emptied, and memory beyond what HighWater allows goes back.
+  void note_step(std::size_t shard) {
+    for (std::size_t block = 0; block < blocks_; ++block) {
+      List& read = list(block, shard);
+      read.most_known.recycle(read.known);
+      read.most_fresh.recycle(read.fresh);
+    }
+  }
+  /// As note_step() of all readers for so many steps in which nothing was queued.
+  void pass(std::size_t steps) {
+    for (List& idle : lists_) {
+      idle.most_known.pass(steps);
+      idle.most_known.release(idle.known);
+      idle.most_fresh.pass(steps);
+      idle.most_fresh.release(idle.fresh);
+    }
+  }
+
+  /// Throws std::length_error for more calls to one reader in one step than 32 bits can count.
+  static void require_countable(std::uint64_t calls) {
+    if (calls > std::numeric_limits<std::uint32_t>::max()) {
+      throw std::length_error("sweepgrid: more than 2^32 - 1 calls to the cells of one part of a grid in one step");
+    }
   }
 
   /// Calls that a writer has queued.
@@ -83,16 +107,6 @@ class OpQueues {
   }
 
  private:
-  template <class T>
-  static void clear(std::vector<T>& list) {
-    if (list.capacity() == 0) return;
-    const std::size_t wanted = list.size() + list.size() / 8;
-    const bool wasteful = list.capacity() > 64 && wanted + wanted / 8 < list.capacity();
-    if (wasteful) std::vector<T>().swap(list);
-    list.clear();
-    if (wasteful) list.reserve(wanted);
-  }
-
   std::vector<List> lists_;  // [block][shard]
   std::size_t blocks_ = 0;
   std::size_t shards_ = 0;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 #include <limits>
+#include <stdexcept>
 #include <string>
 #include <utility>
 
@@ -18,9 +19,12 @@ inline constexpr std::size_t kLocalSortShare = 3;
 /// Measured: up to this many inserts and erases, tests against all residents beat the sweep sets.
 inline constexpr std::size_t kDirectOps = 12;
 
-/// Resizes with an eighth to spare: a vector's own doubling would cost a third of a cell's memory.
+/// Resizes with an eighth to spare: a vector's own doubling would cost a third of a cell's memory. Places have 32 bits.
 template <class T>
 void grow(std::vector<T>& values, std::size_t size) {
+  if (size > std::numeric_limits<std::uint32_t>::max()) {
+    throw std::length_error("sweepgrid: an interval list of more than 2^32 - 1 places");
+  }
   if (values.capacity() < size) values.reserve(size + size / 8);
   values.resize(size);
 }
@@ -42,7 +46,7 @@ struct BatchSap<Scalar, Dim>::Integration {
 
 template <class Scalar, int Dim>
 void BatchSap<Scalar, Dim>::drain(std::span<const Op> ops, DeltaList& deltas, SapCounters& counters) {
-  DrainArena arena;
+  DrainArena arena(deltas);
   const Ops resolved(ops, slots_, arena.resource());
   Drain drain{deltas, counters, arena.resource()};
   const std::size_t deltas_before = deltas.size();
@@ -255,7 +259,8 @@ void BatchSap<Scalar, Dim>::integrate_axis(int axis, const Ops& ops, SweepSets* 
   const auto added = static_cast<std::uint32_t>(inserts.size());
   const auto count = static_cast<std::uint32_t>(list.end - list.begin + added - erases.size());
   const bool forward = list.begin >= added;
-  if (!forward && list.storage.size() < list.end + added) batch_sap::grow(list.storage, list.end + added);
+  const std::size_t needed = std::size_t{list.end} + added;
+  if (!forward && list.storage.size() < needed) batch_sap::grow(list.storage, needed);
   Integration in{axis, sets != nullptr && axis == 0 && !erases.empty(),
                  sets != nullptr && axis == Dim - 1 && !inserts.empty(), sets, list.storage.data(), list.begin,
                  list.end,

@@ -7,7 +7,7 @@
 
 namespace sweepgrid {
 
-/// A new empty cell. Throws std::invalid_argument for a segment capacity below 4.
+/// A new empty cell. Throws std::invalid_argument for a segment capacity out of its range.
 template <class Scalar, int Dim>
 [[nodiscard]] std::unique_ptr<SweepAndPrune<Scalar, Dim>> make_cell(const CellOptions& options);
 

@@ -22,8 +22,10 @@ enum class Integration {
 /// Settings of a cell; the defaults are measured (see sap/README.md).
 struct CellOptions {
   CellKind kind = CellKind::kAuto;
-  /// Endpoints per segment, at least 4 (kSegmented only; the paper finds about 2^5).
+  /// Endpoints per segment, 4 to kMostSegmentCapacity (kSegmented only; the paper finds about 2^5). Every axis of
+  /// every cell holds memory for at least one segment.
   int segment_capacity = 32;
+  static constexpr int kMostSegmentCapacity = 1 << 16;
   /// kSegmented only. All choices give the same overlaps; the others than kAuto are for studies.
   Integration integration = Integration::kAuto;
 };

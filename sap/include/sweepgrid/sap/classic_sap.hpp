@@ -60,7 +60,7 @@ class ClassicSap final : public SweepAndPrune<Scalar, Dim> {
 
 template <class Scalar, int Dim>
 void ClassicSap<Scalar, Dim>::drain(std::span<const Op> ops, DeltaList& deltas, SapCounters& counters) {
-  DrainArena arena;
+  DrainArena arena(deltas);
   const Ops resolved(ops, slots_, arena.resource());
   if (ops.empty()) return;
   ++counters.global_sorts;

@@ -5,13 +5,15 @@
 #include <cstdint>
 #include <vector>
 
+#include <sweepgrid/sap/high_water.hpp>
 #include <sweepgrid/sap/overlap_delta.hpp>
+#include <sweepgrid/sap/scratch_memory.hpp>
 #include <sweepgrid/sap/step_budget.hpp>
 
 namespace sweepgrid {
 
 /// Where cells write overlap deltas: a vector that charges a budget whenever it grows, because one cell with n objects
-/// at one point has n^2 / 2 of them to write.
+/// at one point has n^2 / 2 of them to write. Lends them the memory that they need meanwhile, too.
 class DeltaList {
  public:
   /// Without a budget: as long as memory lasts.
@@ -36,6 +38,25 @@ class DeltaList {
     charged_ = 0;
   }
 
+  /// What a drain needs beside its deltas. Whoever uses it resets it.
+  [[nodiscard]] ScratchMemory& scratch() { return scratch_; }
+
+  /// Ends a step: empties the list, and memory beyond what HighWater allows goes back.
+  void note_step() {
+    water_.note(deltas_.size());
+    release();
+    scratch_.note_step();
+  }
+  /// As note_step() for so many steps in which the list was not used.
+  void pass(std::size_t steps) {
+    water_.pass(steps);
+    release();
+    scratch_.pass(steps);
+  }
+
+  /// Heap bytes held.
+  [[nodiscard]] std::size_t bytes() const { return deltas_.capacity() * sizeof(OverlapDelta) + scratch_.bytes(); }
+
   [[nodiscard]] std::size_t size() const { return deltas_.size(); }
   [[nodiscard]] bool empty() const { return deltas_.empty(); }
   [[nodiscard]] std::size_t capacity() const { return deltas_.capacity(); }
@@ -46,6 +67,10 @@ class DeltaList {
   [[nodiscard]] auto end() const { return deltas_.end(); }
 
  private:
+  void release() {
+    water_.release(deltas_);
+    charged_ = 0;
+  }
   [[gnu::noinline]] void grow() {
     charge();
     deltas_.reserve(std::max<std::size_t>(16, 2 * deltas_.capacity()));
@@ -55,6 +80,8 @@ class DeltaList {
   StepBudget* budget_ = nullptr;
   std::uint64_t bytes_each_ = 0;
   std::size_t charged_ = 0;
+  ScratchMemory scratch_;
+  HighWater water_;
 };
 
 }  // namespace sweepgrid

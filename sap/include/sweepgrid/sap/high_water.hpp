@@ -31,6 +31,11 @@ class HighWater {
     ages_[count_ - 1] = 0;
   }
 
+  /// note() for so many steps at once that all used as much.
+  void pass(std::size_t steps, std::size_t used = 0) {
+    for (std::size_t step = std::min<std::size_t>(steps, 2 * kSteps); step > 0; --step) note(used);
+  }
+
   /// The most that one of the latest steps used, rounded up to a multiple of 16.
   [[nodiscard]] std::size_t most() const {
     if (count_ == 0) return 0;

@@ -7,17 +7,30 @@
 #include <vector>
 
 #include <sweepgrid/sap/cell_op.hpp>
+#include <sweepgrid/sap/delta_list.hpp>
 #include <sweepgrid/sap/object_slots.hpp>
 #include <sweepgrid/sap/refused_op.hpp>
 
 namespace sweepgrid {
 
-/// Memory for one drain: a stack buffer that spills to the heap, so that cells keep no scratch of their own.
+/// Memory for one drain: a buffer on the stack, and beyond that the scratch memory of the list that it writes to.
 class DrainArena {
  public:
+  /// Beyond the buffer, the heap.
+  DrainArena() = default;
+  explicit DrainArena(DeltaList& deltas)
+      : scratch_(&deltas.scratch()), resource_(buffer_.data(), buffer_.size(), scratch_) {}
+  ~DrainArena() {
+    resource_.release();
+    if (scratch_ != nullptr) scratch_->reset();
+  }
+  DrainArena(const DrainArena&) = delete;
+  DrainArena& operator=(const DrainArena&) = delete;
+
   [[nodiscard]] std::pmr::memory_resource* resource() { return &resource_; }
 
  private:
+  ScratchMemory* scratch_ = nullptr;
   alignas(16) std::array<std::byte, 8192> buffer_;
   std::pmr::monotonic_buffer_resource resource_{buffer_.data(), buffer_.size()};
 };

@@ -4,7 +4,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 #include <new>
+#include <stdexcept>
 #include <type_traits>
 #include <utility>
 
@@ -52,15 +54,19 @@ class RowBlock {
   [[nodiscard]] Bits bits(int index, std::uint32_t place) const { return static_cast<Bits>(row(index)[place]) ^ kFlip; }
   void set_bits(int index, std::uint32_t place, Bits bits) { row(index)[place] = static_cast<Value>(bits ^ kFlip); }
 
-  /// Makes room for `size` objects in all. The first allocation is exact, and so is every one of few objects.
-  void reserve(std::uint32_t size) {
+  /// Makes room for `size` objects in all. The first allocation is exact, and so is every one of few objects. Throws
+  /// std::length_error for more than 2^32 - 4.
+  void reserve(std::uint64_t size) {
     if (size > capacity_) reallocate(size_ == 0 ? size : size + size / 16);
   }
 
   /// Gives memory back when much more is held than is used.
   void fit() {
-    if (capacity_ - size_ > kGranule + size_ / 8) reallocate(size_ + size_ / 16);
+    if (capacity_ - size_ > kGranule + size_ / 8) reallocate(std::uint64_t{size_} + size_ / 16);
   }
+
+  /// Keeps the memory.
+  void clear() { size_ = 0; }
 
   /// Adds an object, whose values are to be written. Precondition: there is room.
   std::uint32_t append(ObjectId object) {
@@ -85,9 +91,13 @@ class RowBlock {
     return capacity * (sizeof(ObjectId) + (kValueRows - 1) * sizeof(Value)) + last_row;
   }
 
-  void reallocate(std::uint32_t size) {
+  void reallocate(std::uint64_t size) {
+    const std::uint64_t capacity = (size + kGranule - 1) / kGranule * kGranule;
+    if (capacity > std::numeric_limits<std::uint32_t>::max()) {
+      throw std::length_error("sweepgrid: more than 2^32 - 4 objects in one cell");
+    }
     RowBlock larger;
-    larger.capacity_ = (size + kGranule - 1) / kGranule * kGranule;
+    larger.capacity_ = static_cast<std::uint32_t>(capacity);
     if (larger.capacity_ != 0) {
       larger.data_ = static_cast<std::byte*>(::operator new(bytes_for(larger.capacity_)));
       larger.size_ = size_;

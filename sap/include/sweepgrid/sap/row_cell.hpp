@@ -60,6 +60,19 @@ class RowCell final : public SweepAndPrune<Scalar, Dim> {
     if (done != ops.size()) refuse_op(ops[done]);
   }
 
+  /// Has these objects and no others, and keeps the memory that it has.
+  void refill(std::span<const Op> ops) {
+    rows_.clear();
+    rows_.reserve(ops.size());
+    for (const Op& op : ops) {
+      const std::uint32_t place = rows_.append(op.object);
+      for (int axis = 0; axis < Dim; ++axis) {
+        rows_.set_bits(axis, place, op.box.min[axis]);
+        rows_.set_bits(Dim + axis, place, op.box.max[axis]);
+      }
+    }
+  }
+
   /// The residents, by place.
   [[nodiscard]] std::span<const ObjectId> ids() const { return {rows_.ids(), rows_.size()}; }
 

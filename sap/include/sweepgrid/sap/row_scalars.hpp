@@ -87,7 +87,7 @@ class RowScalars {
         block.remove(place);
         continue;
       }
-      block.reserve(place + 1);
+      block.reserve(std::uint64_t{place} + 1);
       if (op.kind() == OpKind::kInsert) block.append(op.object());
       for (int row = 0; row < 2 * Dim; ++row) block.set_bits(row, place, op.box()[row]);
     }

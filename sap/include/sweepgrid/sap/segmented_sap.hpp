@@ -30,7 +30,7 @@ class SegmentedSap final : public SweepAndPrune<Scalar, Dim> {
   using typename Base::Op;
   using typename Base::Resident;
 
-  /// Throws std::invalid_argument below 4 endpoints per segment.
+  /// Throws std::invalid_argument for a capacity that is not within 4 and CellOptions::kMostSegmentCapacity.
   explicit SegmentedSap(int segment_capacity, Integration integration = Integration::kAuto);
 
   void drain(std::span<const Op> ops, DeltaList& deltas, SapCounters& counters) override;

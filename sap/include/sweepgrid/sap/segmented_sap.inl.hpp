@@ -24,12 +24,16 @@ SegmentedSap<Scalar, Dim>::SegmentedSap(int segment_capacity, Integration integr
     throw std::invalid_argument("sweepgrid: segment_capacity is " + std::to_string(segment_capacity) +
                                 ", but a segment needs room for at least 4 endpoints");
   }
+  if (segment_capacity > CellOptions::kMostSegmentCapacity) {
+    throw std::invalid_argument("sweepgrid: segment_capacity is " + std::to_string(segment_capacity) +
+                                ", but must be at most " + std::to_string(CellOptions::kMostSegmentCapacity));
+  }
   for (int axis = 0; axis < Dim; ++axis) lists_.emplace_back(segment_capacity);
 }
 
 template <class Scalar, int Dim>
 void SegmentedSap<Scalar, Dim>::drain(std::span<const Op> ops, DeltaList& deltas, SapCounters& counters) {
-  DrainArena arena;
+  DrainArena arena(deltas);
   const Ops resolved(ops, slots_, arena.resource());
   resting_.resize(slots_.slot_bound());
   const bool comes_or_goes = !resolved.inserts.empty() || !resolved.erases.empty();

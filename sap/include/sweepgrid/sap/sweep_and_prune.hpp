@@ -47,6 +47,10 @@ class SweepAndPrune {
   /// Precondition: no visitor is a resident.
   virtual void visit(std::span<const Visit> visits, DeltaList& deltas, SapCounters& counters) const;
 
+  /// What visit() does, among residents as given.
+  static void visit(std::span<const Resident> residents, std::span<const Visit> visits, DeltaList& deltas,
+                    SapCounters& counters);
+
   /// Inserts and erases as drain() does, with the same refusals, but reports no deltas: for objects whose pairs are
   /// known elsewhere already. Precondition: that of drain(), and no op is an update.
   virtual void transfer(std::span<const Op> ops, SapCounters& counters);
@@ -71,6 +75,12 @@ void SweepAndPrune<Scalar, Dim>::visit(std::span<const Visit> visits, DeltaList&
   if (visits.empty()) return;
   std::vector<Resident> residents;
   append_residents(residents);
+  visit(residents, visits, deltas, counters);
+}
+
+template <class Scalar, int Dim>
+void SweepAndPrune<Scalar, Dim>::visit(std::span<const Resident> residents, std::span<const Visit> visits,
+                                       DeltaList& deltas, SapCounters& counters) {
   const std::size_t known = deltas.size();
   for (const Visit& visit : visits) {
     counters.box_tests += residents.size() * (std::size_t{visit.was} + std::size_t{visit.is});

@@ -46,7 +46,7 @@ class SweepingPlane final : public SweepAndPrune<Scalar, Dim> {
 
 template <class Scalar, int Dim>
 void SweepingPlane<Scalar, Dim>::drain(std::span<const Op> ops, DeltaList& deltas, SapCounters& counters) {
-  DrainArena arena;
+  DrainArena arena(deltas);
   const ResolvedOps<Scalar, Dim> resolved(ops, slots_, arena.resource());
   if (ops.empty()) return;
   ++counters.global_sorts;

@@ -47,6 +47,8 @@ class StageGraph {
   [[nodiscard]] const std::string& name(StageId stage) const;
   /// Wall time of the stage in the latest run, plan included.
   [[nodiscard]] double seconds(StageId stage) const;
+  /// Heap bytes held, without what oneTBB holds, and what plans and bodies do.
+  [[nodiscard]] std::size_t bytes() const;
 
  private:
   struct Impl;
