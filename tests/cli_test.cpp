@@ -1,11 +1,7 @@
 // The sweepgrid program: that its verifier notices every kind of wrong event, and what it answers, writes and exits
 // with.
 
-#include <sys/wait.h>
-
 #include <algorithm>
-#include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 #include <random>
 #include <string>
@@ -14,16 +10,15 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "cli/output_file.hpp"
 #include "cli/overlap_oracle.hpp"
 #include "cli/step_times.hpp"
 #include "cli/verifier.hpp"
+#include "program_run.hpp"
 #include "scenes_data/scene_files.hpp"
 
 namespace sweepgrid::cli_test {
 namespace {
 
-using scene_files::Directory;
 using scene_files::read_file;
 
 using SceneEvents = Events<SceneKey>;
@@ -167,52 +162,8 @@ TEST(StepTimes, QuantilesAreSamples) {
   EXPECT_EQ(times.quantile(1), 200);
 }
 
-TEST(OutputFile, IsThereAsAWholeOrNotAtAll) {
-  const Directory directory;
-  const std::string path = directory.write("out", "old");
-  {
-    OutputFile file(path);
-    file.write("new");
-    EXPECT_EQ(read_file(path), "old");
-  }
-  EXPECT_EQ(read_file(path), "old");
-  OutputFile file(path);
-  file.write("new");
-  file.commit();
-  EXPECT_EQ(read_file(path), "new");
-  const auto files = std::filesystem::directory_iterator(directory.path(""));
-  EXPECT_EQ(std::distance(begin(files), end(files)), 1);
-}
-
-TEST(OutputFile, TellsThatTheDeviceIsFullAndLeavesItInPlace) {
-  ASSERT_TRUE(std::filesystem::exists("/dev/full"));
-  OutputFile file("/dev/full");
-  EXPECT_THROW(
-      {
-        file.write("text");
-        file.commit();
-      },
-      std::system_error);
-  EXPECT_TRUE(std::filesystem::is_character_file("/dev/full"));
-}
-
-/// Runs the program in a directory of its own.
-class Program : public testing::Test {
+class Program : public ProgramRun {
  protected:
-  struct Result {
-    int status = -1;
-    std::string out;
-    std::string err;
-  };
-
-  Result run(const std::string& arguments) const {
-    const std::string command = std::string("'") + SWEEPGRID_PROGRAM + "' " + arguments + " >'" +
-                                directory_.path("stdout") + "' 2>'" + directory_.path("stderr") + "'";
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_file(directory_.path("stdout")),
-            read_file(directory_.path("stderr"))};
-  }
-
   // Two unit cubes that meet, part and meet, beside one that comes and goes.
   [[nodiscard]] std::string small_scene() const {
     return "'" +
@@ -221,8 +172,6 @@ class Program : public testing::Test {
                                                                 {{4, cube(0)}, {7, cube(1)}}})) +
            "'";
   }
-
-  Directory directory_;
 };
 
 TEST_F(Program, ExitsWithTwoAndTheReasonWhenItCannotDoWhatItIsAskedFor) {

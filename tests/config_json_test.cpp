@@ -88,6 +88,7 @@ TEST(ConfigJson, RefusesWhatItDoesNotKnowAndNamesIt) {
       {R"({"cell_population": 18446744073709551615})", "Config::cell_population is 18446744073709551615"},
       {R"({"step_bytes": -1})", "Config::step_bytes is -1, but must be a whole number of at least 0"},
       {R"({"threads": -1})", "Config::threads is -1, but must be a whole number of at least 0"},
+      {R"({"threads": 65537})", "Config::threads is 65537, but must be a whole number of at least 0 and at most 65536"},
       {R"({"threads": null})", "Config::threads is null"},
       {R"({"reduction": "sum"})", "Config::reduction is \"sum\", but must be one of \"reporter\", \"counts\""},
       {R"({"reduction": 1})", "Config::reduction is 1"},
@@ -117,6 +118,17 @@ TEST(ConfigJson, RefusesWhatItDoesNotKnowAndNamesIt) {
     EXPECT_NE(found.find(reason), std::string::npos) << text << "\nexpected: " << reason << "\nfound: " << found;
   }
   EXPECT_EQ(refusal("{}"), "");
+}
+
+// Of any depth: JSON that a client has parsed may hold more levels than a recursion can follow.
+TEST(ConfigJson, RefusesWhatIsNestedDeeplyWithoutFollowingIt) {
+  const std::string deep = std::string(200000, '[') + std::string(200000, ']');
+  for (const char* name : {"cell", "cell_size", "cell_population", "reduction", "envelope", "step_bytes", "threads"}) {
+    const std::string found = refusal("{\"" + std::string(name) + "\": " + deep + "}");
+    EXPECT_NE(found.find(" is nested more than 64 levels deep, "), std::string::npos) << found;
+  }
+  EXPECT_EQ(refusal(deep), "sweepgrid: Config is nested more than 64 levels deep, not an object");
+  EXPECT_EQ(refusal("{\"depth\": " + deep + "}"), "sweepgrid: Config has no member 'depth'");
 }
 
 TEST(ConfigJson, ARefusalChangesNothing) {

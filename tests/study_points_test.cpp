@@ -1,16 +1,23 @@
 // Points of a study outlive what may happen to it: an interruption, a torn line, another program or machine.
+#include <sys/resource.h>
+
+#include <cerrno>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <functional>
 #include <iterator>
+#include <stdexcept>
 #include <string>
+#include <system_error>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "scenes_data/scene_files.hpp"
 #include "study/point_store.hpp"
+#include "study/report_files.hpp"
 #include "study/study_points.hpp"
 #include "study/study_progress.hpp"
 
@@ -85,6 +92,32 @@ TEST_F(PointStores, LeaveOutALineThatIsNoPoint) {
   EXPECT_NE(joined(store.notes()).find("line 4 is no point"), std::string::npos);
 }
 
+TEST_F(PointStores, LeaveOutAWrongMemberAndNameIt) {
+  put(fingerprint(), "a", 1);
+  const std::string deep(100000, '[');
+  const std::pair<std::string, std::string> lines[] = {
+      {R"({"fingerprint":"x","of":3})", "member 'of' must be an object, is 3"},
+      {R"({"fingerprint":7,"of":{}})", "member 'fingerprint' must be a text, is 7"},
+      {R"({"fingerprint":"","of":{}})", "member 'fingerprint' must be a text, is \"\""},
+      {R"({"fingerprint":"x","point":["b"],"value":1})", "member 'point' must be a text, is [\"b\"]"},
+      {R"({"fingerprint":"x","point":"b"})", "member 'value' must be there, is absent"},
+      {R"({"of":{}})", "member 'fingerprint' must be a text, is absent"},
+      {"3", "it must be an object, is 3"},
+      {"", "parse error"},
+      {R"({"fingerprint":"x",)", "parse error"},
+      {R"({"fingerprint":"x","point":"b","value":)" + deep, "nested more than 64 levels deep"}};
+  for (const auto& [line, reason] : lines) append(line + "\n");
+  const PointStore store = open(fingerprint());
+  EXPECT_EQ(store.size(), 1U);
+  std::size_t number = 3;  // after the fingerprint and the point
+  for (const auto& [line, reason] : lines) {
+    const std::string expected =
+        file() + ": line " + std::to_string(number++) + " is no point and is left out: " + reason;
+    EXPECT_NE(joined(store.notes()).find(expected), std::string::npos) << expected << "\n" << joined(store.notes());
+  }
+  EXPECT_EQ(joined(store.notes()).find("json.exception"), std::string::npos);
+}
+
 TEST_F(PointStores, NeverMixStudies) {
   const Fingerprint others[] = {fingerprint(2), fingerprint(1, "abd"), fingerprint(1, "abc", "n")};
   const std::string names[] = {"parameters", "program (abd; now abc)", "machine (n; now m)"};
@@ -118,6 +151,74 @@ TEST_F(PointStores, FreshDropsTheStudysOwnPointsOnly) {
   EXPECT_EQ(open(fingerprint(2)).size(), 1U);
 }
 
+TEST_F(PointStores, NameFilePointAndMemberOfAValueThatIsNotAsExpected) {
+  {
+    PointStore store = open(fingerprint());
+    store.add("a", {{"list", {{{"v", "text"}}}}});
+  }
+  const PointStore store = open(fingerprint());
+  const auto error = [&](const std::string& key, const auto& read) {
+    try {
+      store.read(key, read);
+    } catch (const std::runtime_error& caught) {
+      return std::string(caught.what());
+    }
+    return std::string();
+  };
+  const auto read_number = [](const json& value) {
+    return member_of<int>(member_of<std::vector<json>>(value, "list").at(0), "v");
+  };
+  const auto read_absent = [](const json& value) {
+    return member_of<int>(member_of<std::vector<json>>(value, "list").at(0), "w");
+  };
+  EXPECT_EQ(error("a", read_number),
+            file() + ": point 'a': member 'v': type must be number, but is string; --fresh measures all anew");
+  EXPECT_EQ(error("a", read_absent), file() + ": point 'a': member 'w' is absent; --fresh measures all anew");
+  EXPECT_EQ(error("b", read_number), file() + ": point 'b': is not there; --fresh measures all anew");
+  EXPECT_EQ(store.get<json>("a").at("list").size(), 1U);
+}
+
+/// Lets no file of this process grow beyond so many bytes: a write of more takes a part, and the next one fails.
+class FileSizeLimit {
+ public:
+  explicit FileSizeLimit(rlim_t bytes) : old_handler_(std::signal(SIGXFSZ, SIG_IGN)) {
+    getrlimit(RLIMIT_FSIZE, &old_);
+    const rlimit limit{bytes, old_.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~FileSizeLimit() {
+    setrlimit(RLIMIT_FSIZE, &old_);
+    std::signal(SIGXFSZ, old_handler_);
+  }
+  FileSizeLimit(const FileSizeLimit&) = delete;
+  FileSizeLimit& operator=(const FileSizeLimit&) = delete;
+
+ private:
+  rlimit old_{};
+  void (*old_handler_)(int);
+};
+
+TEST_F(PointStores, TellWhyAPointCannotBeWrittenAndStayAsTheyWere) {
+  put(fingerprint(), "a", 1);
+  PointStore store = open(fingerprint());
+  const std::string before = text();
+  std::string error;
+  {
+    const FileSizeLimit limit(before.size() + 20);
+    errno = EISDIR;  // of some earlier call
+    try {
+      store.add("b", 2);
+    } catch (const std::system_error& caught) {
+      error = caught.what();
+    }
+  }
+  EXPECT_EQ(error, "cannot write " + file() + ": File too large");
+  EXPECT_EQ(text(), before);
+  EXPECT_EQ(store.find("b"), nullptr);
+  store.add("c", 3);
+  EXPECT_EQ(json::parse(text().substr(before.size())).at("point"), "c");
+}
+
 std::string error_of(const std::function<void()>& action) {
   try {
     action();
@@ -139,6 +240,41 @@ TEST_F(PointStores, BelongToOneProcessAtATime) {
   const PointStore store = open(fingerprint());
   const std::string error = error_of([&] { (void)open(fingerprint()); });
   EXPECT_NE(error.find("another study is writing to it"), std::string::npos) << error;
+}
+
+TEST_F(PointStores, RefuseNamesThatAreNoText) {
+  PointStore store = open(fingerprint());
+  const std::string error = error_of([&] { store.add("\xff.dump", 1); });
+  EXPECT_EQ(error, file() + ": a point cannot be written: invalid UTF-8 byte at index 0: 0xFF");
+}
+
+TEST_F(PointStores, AreRegularFilesWhereLinksLead) {
+  std::filesystem::create_symlink("target", file());
+  put(fingerprint(), "a", 1);
+  EXPECT_EQ(scene_files::read_file(directory_.path("target")), text());
+  std::filesystem::remove(file());
+  for (const char* target : {"/dev/full", "/dev/null"}) {
+    std::filesystem::create_symlink(target, file());
+    const std::string error = error_of([&] { (void)open(fingerprint()); });
+    EXPECT_EQ(error, file() + ": is no regular file");
+    std::filesystem::remove(file());
+  }
+  std::filesystem::create_directory(file());
+  EXPECT_EQ(error_of([&] { (void)open(fingerprint()); }), file() + ": Is a directory");
+}
+
+TEST_F(PointStores, ASecondSignalActsAsItDidBeforeTheStudy) {
+  static volatile std::sig_atomic_t seen = 0;
+  const auto old = std::signal(SIGTERM, [](int) { seen = seen + 1; });
+  PointStore store = open(fingerprint());
+  const StudyPoint twice{"a", 1, [] {
+                           std::raise(SIGINT);
+                           std::raise(SIGTERM);
+                           return json(1);
+                         }};
+  EXPECT_THROW(measure_points("test", {twice, twice, {"b", 1, [] { return json(2); }}}, store), Interrupted);
+  EXPECT_EQ(seen, 1);
+  std::signal(SIGTERM, old);
 }
 
 TEST_F(PointStores, InterruptedStudyKeepsItsPointsAndGoesOn) {
@@ -172,6 +308,19 @@ TEST(StudyProgress, ReckonsTheRestFromWhatWasMeasured) {
   EXPECT_EQ(duration_text(59.5), "1 min 0 s");
   EXPECT_EQ(duration_text(12), "12 s");
   EXPECT_EQ(duration_text(3660), "1 h 1 min");
+}
+
+TEST(ReportFiles, TellThatTheyCannotBeWrittenAndFollowLinks) {
+  const scene_files::Directory directory;
+  Report report;
+  report.study = "test";
+  std::filesystem::create_symlink("target", directory.path("study-test.json"));
+  (void)write_report(report, directory.path(""));
+  EXPECT_EQ(json::parse(scene_files::read_file(directory.path("target"))).at("study"), "test");
+  std::filesystem::remove(directory.path("study-test.json"));
+  std::filesystem::create_symlink("/dev/full", directory.path("study-test.json"));
+  const std::string error = error_of([&] { (void)write_report(report, directory.path("")); });
+  EXPECT_EQ(error, "cannot write " + directory.path("study-test.json") + ": No space left on device");
 }
 
 TEST(StudyOptions, NameTheFolderThatCannotBeWrittenInto) {

@@ -33,6 +33,11 @@ std::shared_ptr<Executor> make_serial_executor() { return std::make_shared<Seria
 
 std::shared_ptr<Executor> make_executor(int threads) {
   if (threads < 0) throw std::invalid_argument("threads must not be negative: " + std::to_string(threads));
+  // oneTBB takes memory for each, used or not, and for more of them than this machine has it fails in its own ways.
+  constexpr int kMostThreads = 65536;
+  if (threads > kMostThreads) {
+    throw std::invalid_argument("threads must not be above 65536: " + std::to_string(threads));
+  }
   if (threads == 1) return make_serial_executor();
   if (threads == 0) threads = oneapi::tbb::info::default_concurrency();
   if (threads == 1) return make_serial_executor();

@@ -125,9 +125,10 @@ GuardedRun run_guarded(const RunBudget& budget, const std::function<std::string(
   const Clock::time_point start = Clock::now();
   const pid_t child = fork();
   if (child < 0) {
+    const int error = errno;  // closing may change it
     close(ends[0]);
     close(ends[1]);
-    fail("fork");
+    throw std::system_error(error, std::generic_category(), "fork");
   }
   if (child == 0) {
     close(ends[0]);

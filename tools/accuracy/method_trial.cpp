@@ -12,6 +12,7 @@
 
 #include "accuracy/truth.hpp"
 #include "measure/stopwatch.hpp"
+#include "setup/json_text.hpp"
 
 namespace sweepgrid::accuracy {
 namespace {
@@ -216,22 +217,22 @@ nlohmann::json trial_json(const Trial& trial) {
 
 Trial trial_of(const nlohmann::json& json) {
   Trial trial;
-  const std::string name = json.at("verdict");
+  const auto name = member_of<std::string>(json, "verdict");
   const auto verdict =
       std::find_if(kVerdicts.begin(), kVerdicts.end(), [&](const auto& known) { return known.second == name; });
   if (verdict == kVerdicts.end()) throw std::invalid_argument("no verdict '" + name + "'");
   trial.verdict = verdict->first;
-  json.at("error").get_to(trial.error);
-  json.at("steps").get_to(trial.steps);
-  json.at("true_pairs").get_to(trial.true_pairs);
-  json.at("reported_pairs").get_to(trial.reported_pairs);
-  json.at("missed_pairs").get_to(trial.missed_pairs);
-  json.at("extra_pairs").get_to(trial.extra_pairs);
-  json.at("refused_boxes").get_to(trial.refused_boxes);
-  json.at("start_ms").get_to(trial.start_ms);
-  json.at("step_ms").get_to(trial.step_ms);
-  json.at("most_step_ms").get_to(trial.most_step_ms);
-  json.at("peak_bytes").get_to(trial.peak_bytes);
+  get_member(json, "error", trial.error);
+  get_member(json, "steps", trial.steps);
+  get_member(json, "true_pairs", trial.true_pairs);
+  get_member(json, "reported_pairs", trial.reported_pairs);
+  get_member(json, "missed_pairs", trial.missed_pairs);
+  get_member(json, "extra_pairs", trial.extra_pairs);
+  get_member(json, "refused_boxes", trial.refused_boxes);
+  get_member(json, "start_ms", trial.start_ms);
+  get_member(json, "step_ms", trial.step_ms);
+  get_member(json, "most_step_ms", trial.most_step_ms);
+  get_member(json, "peak_bytes", trial.peak_bytes);
   return trial;
 }
 

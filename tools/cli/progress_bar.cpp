@@ -7,6 +7,8 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "cli/standard_streams.hpp"
+
 namespace sweepgrid {
 namespace {
 
@@ -19,7 +21,7 @@ ProgressBar::ProgressBar(std::string title, std::optional<std::uint64_t> total)
     : title_(std::move(title)), total_(total), on_terminal_(isatty(STDERR_FILENO) == 1) {}
 
 ProgressBar::~ProgressBar() {
-  if (on_terminal_) fmt::print(stderr, "\r\x1b[K");
+  if (on_terminal_) show_on_stderr("\r\x1b[K");
 }
 
 void ProgressBar::show(std::uint64_t done) {
@@ -28,11 +30,11 @@ void ProgressBar::show(std::uint64_t done) {
   if (now - last_shown_ < kPause) return;
   last_shown_ = now;
   if (!total_ || *total_ == 0) {
-    fmt::print(stderr, "\r\x1b[K{} step {}", title_, done);
+    show_on_stderr(fmt::format("\r\x1b[K{} step {}", title_, done));
   } else {
     const double part = static_cast<double>(std::min(done, *total_)) / static_cast<double>(*total_);
     const std::string bar(static_cast<std::size_t>(part * kWidth), '#');
-    fmt::print(stderr, "\r\x1b[K{} [{:.<{}}] {}/{}", title_, bar, kWidth, done, *total_);
+    show_on_stderr(fmt::format("\r\x1b[K{} [{:.<{}}] {}/{}", title_, bar, kWidth, done, *total_));
   }
   std::fflush(stderr);
 }

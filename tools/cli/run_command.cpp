@@ -13,6 +13,7 @@
 
 #include "cli/events_file.hpp"
 #include "cli/output_file.hpp"
+#include "cli/output_place.hpp"
 #include "cli/run_json.hpp"
 #include "cli/run_table.hpp"
 #include "cli/scene_run.hpp"
@@ -57,7 +58,7 @@ bool run_command(const RunOptions& options) {
   if (!options.events_path.empty()) events.emplace(options.events_path, options.scenes.size());
   std::optional<OutputFile> json;
   if (!options.json_path.empty()) json.emplace(options.json_path);
-  const bool stdout_taken = options.events_path == "-" || options.json_path == "-";
+  const bool stdout_taken = is_standard_output(options.events_path) || is_standard_output(options.json_path);
   const RunTable table(stdout_taken ? stderr : stdout, options.scenes);
   table.print_head();
   std::vector<SceneResult> results;

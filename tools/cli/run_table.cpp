@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "cli/standard_streams.hpp"
 #include "scenes/generator_params.hpp"
 
 namespace sweepgrid {
@@ -46,6 +47,7 @@ void RunTable::print_head() const {
              "{:<{}} {:>7} {:>6} {:>9} {:>7} {:>7} {:>8} {:>7} | {:>7} {:>7} | {:>7} {:>7} | {:>7} | {:>7} {:>7}\n",
              "scene", name_width_, "objects", "steps", "moved", "inserts", "erases", "begins", "ends", "median", "p99",
              "median", "p99", "start", "engine", "peak");
+  flush_standard_stream(out_);
 }
 
 void RunTable::print_row(const SceneResult& result) const {
@@ -58,7 +60,7 @@ void RunTable::print_row(const SceneResult& result) const {
              result.step_times.median(), result.step_times.p99(), result.start_ms, megabytes(result.stats.bytes()),
              megabytes(result.peak_bytes));
   if (result.verification) fmt::print(out_, "  {}\n", verification_text(*result.verification));
-  std::fflush(out_);
+  flush_standard_stream(out_);
 }
 
 std::string verification_text(const Verification& found) {

@@ -8,9 +8,11 @@
 
 namespace sweepgrid {
 
-/// The results of a run for people: one row per scene, printed as the scenes come to their end.
+/// The results of a run for people: one row per scene, printed as the scenes come to their end. Throws
+/// std::system_error when it cannot be printed.
 class RunTable {
  public:
+  /// `out`: stdout or stderr.
   RunTable(std::FILE* out, const std::vector<std::string>& scenes);
 
   void print_head() const;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "cli/command_options.hpp"
 #include "study/accuracy/accuracy_study.hpp"
 #include "study/figures/figures_study.hpp"
 #include "study/scaling/scaling_study.hpp"
@@ -10,6 +11,8 @@
 
 namespace sweepgrid {
 namespace {
+
+constexpr int kMostSimulated = 4096;
 
 // The options that all studies have.
 void add_study_options(CLI::App& command, study::StudyOptions& options) {
@@ -56,17 +59,17 @@ void StudyCommand::add_scaling() {
   const auto options = std::make_shared<study::ScalingOptions>();
   add_study_options(*command, options->study);
   command->add_option("SCENE", options->scenes, "As of `sweepgrid run` (default: five generated ones)");
-  command->add_option("--threads", options->threads, "Numbers of threads to measure (default: 1, 2, 4 ... all)")
-      ->type_name("N,...")
-      ->delimiter(',')
-      ->check(CLI::PositiveNumber.description(""));
-  command->add_option("--simulate", options->simulate, "Numbers of workers to predict (default: 1, 2, 4 ... 256)")
-      ->type_name("N,...")
-      ->delimiter(',')
-      ->check(CLI::Range(1, 4096).description(""));
+  add_numbers(
+      *command, "--threads", NumberRange<int>{1, kMostThreads},
+      [options](int count) { options->threads.push_back(count); },
+      "Numbers of threads to measure (default: 1, 2, 4 ... all)");
+  add_numbers(
+      *command, "--simulate", NumberRange<int>{1, kMostSimulated},
+      [options](int count) { options->simulate.push_back(count); },
+      "Numbers of workers to predict (default: 1, 2, 4 ... 256)");
   command->add_flag("--weak", options->weak, "Also with objects that grow with the threads; generated scenes only");
-  command->add_option("--trace", options->trace, "Write the tasks of a step to FILE, for Perfetto or chrome://tracing")
-      ->type_name("FILE");
+  add_file(*command, "--trace", options->trace,
+           "Write the tasks of a step to FILE, for Perfetto or chrome://tracing; - is stdout");
   studies_.push_back({command, [options] { return study::scaling_study(*options); }});
 }
 
@@ -82,9 +85,10 @@ void StudyCommand::add_accuracy() {
   const auto options = std::make_shared<study::AccuracyOptions>();
   add_study_options(*command, options->study);
   command->add_option("SCENE", options->scenes, "As of `sweepgrid run` (default: six generated ones)");
-  command->add_option("--narrow-cost", options->narrow_cost, "Of a narrow phase per pair (default: measured)")
-      ->type_name("NS")
-      ->check(CLI::NonNegativeNumber.description(""));
+  add_number(
+      *command, "--narrow-cost", NumberRange<double>(), [options](double ns) { options->narrow_cost = ns; },
+      "Of a narrow phase per pair (default: measured)")
+      ->type_name("NS");
   studies_.push_back({command, [options] { return study::accuracy_study(*options); }});
 }
 

@@ -1,5 +1,7 @@
 #include "cli/tune_command.hpp"
 
+#include <cstdint>
+#include <cstdio>
 #include <map>
 #include <stdexcept>
 
@@ -7,8 +9,12 @@
 #include <nlohmann/json.hpp>
 
 #include "accuracy/narrow_phase.hpp"
+#include "cli/command_options.hpp"
+#include "cli/distinct_files.hpp"
 #include "cli/output_file.hpp"
+#include "cli/output_place.hpp"
 #include "cli/provenance_json.hpp"
+#include "cli/standard_streams.hpp"
 #include "measure/stopwatch.hpp"
 #include "tune/tune_json.hpp"
 
@@ -46,22 +52,25 @@ TuneCommand::TuneCommand(CLI::App& app)
   const std::map<std::string, TruthKind> truths = {
       {"T0", TruthKind::kInstants}, {"T1", TruthKind::kMotion}, {"T2", TruthKind::kShapes}};
   command_->add_option("SCENE", scene_.name, "As of `sweepgrid run`")->required();
-  command_->add_option("--steps", scene_.steps, "Only so many steps, the start not counted")
-      ->check(CLI::PositiveNumber.description(""));
-  command_->add_option("--diameter", scene_.options.diameter, "Of the atoms of a dump without a column for it")
-      ->check(CLI::NonNegativeNumber.description(""));
-  command_->add_option("--truth", demand_.truth, "T0 (default): boxes overlap at the steps; T1: or between; T2: shapes")
-      ->transform(CLI::CheckedTransformer(truths).description("T0|T1|T2"));
+  add_number(
+      *command_, "--steps", NumberRange<std::uint64_t>{.least = 1},
+      [this](std::uint64_t count) { scene_.steps = count; }, "Only so many steps, the start not counted");
+  add_diameter(*command_, scene_.options);
+  add_choice(
+      *command_, "--truth", truths, [this](TruthKind truth) { demand_.truth = truth; },
+      "T0 (default): boxes overlap at the steps; T1: or between; T2: shapes");
   command_->add_option("--missed", missed_, "Part of the true pairs that may be missed; 0 (default): by guarantee")
       ->type_name("PART");
   command_->add_option("--extra", extra_, "Part of the reported pairs that may be none; 0: by guarantee (default: any)")
       ->type_name("PART");
-  command_->add_option("--narrow-cost", narrow_ns_, "Of a narrow phase per pair (default: measured)")
-      ->type_name("NS")
-      ->check(CLI::NonNegativeNumber.description(""));
-  command_->add_option("--threads", demand_.threads, "Workers; 0: all cores, 1 (default): none but the caller")
-      ->check(CLI::NonNegativeNumber.description(""));
-  command_->add_option("--json", json_path_, "Write the configuration to FILE (default: -, stdout)")->type_name("FILE");
+  add_number(
+      *command_, "--narrow-cost", NumberRange<double>(), [this](double ns) { narrow_ns_ = ns; },
+      "Of a narrow phase per pair (default: measured)")
+      ->type_name("NS");
+  add_number(
+      *command_, "--threads", NumberRange<int>{0, kMostThreads}, [this](int count) { demand_.threads = count; },
+      "Workers; 0: all cores, 1 (default): none but the caller");
+  add_file(*command_, "--json", json_path_, "Write the configuration to FILE (default: -, stdout)");
   command_->add_flag("--exhaustive", exhaustive_,
                      "Then measure every candidate over all steps, and tell how much better the best is");
 }
@@ -70,6 +79,7 @@ bool TuneCommand::run() const {
   tune::Demand demand = demand_;
   demand.missed = part_of("--missed", missed_);
   if (!extra_.empty()) demand.extra = part_of("--extra", extra_);
+  check_distinct({{"--json", json_path_}}, files_among({scene_.name}));
   OutputFile json(json_path_);
   if (narrow_ns_) {
     demand.narrow_ns = *narrow_ns_;
@@ -83,7 +93,7 @@ bool TuneCommand::run() const {
   try {
     tuning = tune_scene(scene_, demand);
   } catch (const tune::DemandNotMet& error) {
-    fmt::print(stderr, "sweepgrid: {}: {}\n", scene_.name, error.what());
+    show_on_stderr(fmt::format("sweepgrid: {}: {}\n", scene_.name, error.what()));
     return false;
   }
   if (exhaustive_) {
@@ -97,9 +107,11 @@ bool TuneCommand::run() const {
   nlohmann::ordered_json document = tune_json(tuning);
   document["tune"]["build"] = build_json();
   document["tune"]["machine"] = machine_json();
-  fmt::print(json_path_ == "-" ? stderr : stdout, "{}", tune_text(tuning));
   json.write(document.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
   json.commit();
+  std::FILE* const for_people = is_standard_output(json_path_) ? stderr : stdout;
+  fmt::print(for_people, "{}", tune_text(tuning));
+  flush_standard_stream(for_people);
   return true;
 }
 

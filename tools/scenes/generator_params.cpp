@@ -104,10 +104,14 @@ std::optional<double> parse_value(std::string_view text) {
 void set_parameter(std::string_view generator, const Parameter& parameter, std::string_view text,
                    GeneratorParams& params) {
   const auto value = parse_value(text);
-  if (!value) fail(generator, fmt::format("parameter {}: '{}' is not a number", parameter.key, text));
+  const auto bounds = [&] { return fmt::format("within {} and {}", parameter.low, parameter.high); };
+  if (!value) fail(generator, fmt::format("parameter {}: '{}' is not a number {}", parameter.key, text, bounds()));
   if (*value < parameter.low || *value > parameter.high) {
-    fail(generator,
-         fmt::format("parameter {}: {} is not within {} and {}", parameter.key, text, parameter.low, parameter.high));
+    fail(generator, fmt::format("parameter {}: {} is not {}", parameter.key, text, bounds()));
+  }
+  // Divided by, smaller ones would be infinite.
+  if (*value != 0 && std::abs(*value) < kTiny) {
+    fail(generator, fmt::format("parameter {}: {} is neither 0 nor at least {}", parameter.key, text, kTiny));
   }
   if (const auto* real = std::get_if<double GeneratorParams::*>(&parameter.field)) {
     params.*(*real) = *value;
@@ -118,7 +122,7 @@ void set_parameter(std::string_view generator, const Parameter& parameter, std::
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), whole);
   if (error != std::errc() || end != text.data() + text.size()) {
     if (*value != std::floor(*value) || *value >= 0x1p64) {
-      fail(generator, fmt::format("parameter {}: {} is not a whole number", parameter.key, text));
+      fail(generator, fmt::format("parameter {}: {} is not a whole number below 2^64", parameter.key, text));
     }
     whole = static_cast<std::uint64_t>(*value);
   }

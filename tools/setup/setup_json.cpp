@@ -2,13 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <stdexcept>
+#include <system_error>
 
 #include <nlohmann/json.hpp>
 
 #include <sweepgrid/engine/config_json.hpp>
 #include <sweepgrid/sap/quantizer.hpp>
+
+#include "setup/json_text.hpp"
 
 namespace sweepgrid {
 namespace {
@@ -109,7 +113,9 @@ EngineSetup setup_of(const Json& json) {
   Members members(json, "setup");
   members.pass("schema");
   members.pass("tune");
-  if (json.value("schema", Json(kSchema)) != kSchema) members.refuse("schema", json.at("schema"), kSchema);
+  if (const auto schema = json.find("schema"); schema != json.end() && *schema != kSchema) {
+    members.refuse("schema", *schema, kSchema);
+  }
   int version = kSchemaVersion;
   members.read("schema_version", version, 1);
   if (version != kSchemaVersion) {
@@ -129,10 +135,12 @@ EngineSetup setup_of(const Json& json) {
 }
 
 EngineSetup read_setup(const std::string& path) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored)) throw std::runtime_error(path + ": is a directory");
   std::ifstream file(path);
   if (!file) throw std::runtime_error("cannot read " + path);
   try {
-    return setup_of(Json::parse(file));
+    return setup_of(parse_json<Json>(file));
   } catch (const std::exception& error) {
     throw std::runtime_error(path + ": " + error.what());
   }

@@ -15,6 +15,7 @@
 #include <sweepgrid/scheduler/stage_graph.hpp>
 
 #include "measure/stopwatch.hpp"
+#include "setup/json_text.hpp"
 
 namespace sweepgrid::study {
 namespace {
@@ -305,10 +306,10 @@ void to_json(nlohmann::json& json, const MachineCosts& costs) {
 }
 
 void from_json(const nlohmann::json& json, MachineCosts& costs) {
-  json.at("threads").get_to(costs.threads);
+  get_member(json, "threads", costs.threads);
   for_each_figure(costs, [&](const char* name, Spread& figure) {
-    const nlohmann::json& found = json.at(name);
-    figure = {found.at("median"), found.at("low"), found.at("high")};
+    const auto found = member_of<nlohmann::json>(json, name);
+    figure = {member_of<double>(found, "median"), member_of<double>(found, "low"), member_of<double>(found, "high")};
   });
 }
 

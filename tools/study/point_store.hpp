@@ -2,11 +2,13 @@
 
 #include <filesystem>
 #include <map>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include <nlohmann/json.hpp>
 
+#include "setup/json_text.hpp"
 #include "study/fingerprint.hpp"
 #include "study/study_options.hpp"
 
@@ -20,9 +22,9 @@ namespace sweepgrid::study {
 class PointStore {
  public:
   /// Opens the file and takes the points of the same fingerprint. A last line that was not written to its end is cut
-  /// off. What else was found is told by notes().
-  /// Throws std::runtime_error that names the file: it cannot be written, another process has it open for a study, or
-  /// there are no points where `points` is kResume.
+  /// off; lines that are no points are left out. What was found is told by notes().
+  /// Throws std::runtime_error that names the file: it cannot be read or written, another process has it open for a
+  /// study, or there are no points where `points` is kResume.
   PointStore(const std::filesystem::path& folder, const Fingerprint& fingerprint, Points points);
   ~PointStore();
   PointStore(const PointStore&) = delete;
@@ -31,7 +33,27 @@ class PointStore {
   /// Null when the point is not there.
   [[nodiscard]] const nlohmann::json* find(const std::string& key) const;
 
-  /// Writes a point; when this returns, killing the process does not lose it. Throws std::system_error with the path.
+  /// What `read` makes of the value of a point that is there. Throws std::runtime_error that names the file, the point
+  /// and the member when the value is not what `read` expects.
+  template <class Read>
+  auto read(const std::string& key, const Read& read) const {
+    const nlohmann::json* const value = find(key);
+    if (value == nullptr) fail_at(key, "is not there");
+    try {
+      return read(*value);
+    } catch (const nlohmann::json::exception& error) {
+      fail_at(key, problem_of(error));
+    } catch (const std::invalid_argument& error) {
+      fail_at(key, error.what());
+    }
+  }
+  template <class Value>
+  [[nodiscard]] Value get(const std::string& key) const {
+    return read(key, [](const nlohmann::json& value) { return value.get<Value>(); });
+  }
+
+  /// Writes a point; when this returns, killing the process does not lose it. Throws std::system_error with the path,
+  /// and then the file is as it was.
   void add(const std::string& key, nlohmann::json value);
 
   [[nodiscard]] std::size_t size() const { return points_.size(); }
@@ -42,11 +64,13 @@ class PointStore {
 
  private:
   void open();
-  void read(Points points);
+  void read_lines(Points points);
+  [[nodiscard]] std::string read_all() const;
   void cut_torn_line(std::string& text);
   void take_line(const std::string& line, std::size_t number, Points points);
   void append(const nlohmann::json& line);
   void rewrite(const std::string& text);
+  [[noreturn]] void fail_at(const std::string& key, const std::string& problem) const;
   [[noreturn]] void fail(const std::string& reason) const;
 
   std::filesystem::path path_;

@@ -11,30 +11,36 @@
 namespace sweepgrid::study {
 namespace {
 
-// All that a signal handler may touch.
-volatile std::sig_atomic_t interrupted = 0;  // NOLINT(cppcoreguidelines-avoid-non-const-global-variables)
+// What the signal handler uses; sigaction() is among what it may call.
+// NOLINTBEGIN(cppcoreguidelines-avoid-non-const-global-variables)
+volatile std::sig_atomic_t interrupted = 0;
+struct sigaction old_int {};
+struct sigaction old_term {};
+// NOLINTEND(cppcoreguidelines-avoid-non-const-global-variables)
 
-/// While it lives, the first SIGINT or SIGTERM is noted; a second one acts as ever.
+void restore_signals() {
+  sigaction(SIGINT, &old_int, nullptr);
+  sigaction(SIGTERM, &old_term, nullptr);
+}
+
+/// While it lives, the first SIGINT or SIGTERM is noted; a second one acts as it did before. One at a time.
 class InterruptGuard {
  public:
   InterruptGuard() {
     interrupted = 0;
+    sigaction(SIGINT, nullptr, &old_int);
+    sigaction(SIGTERM, nullptr, &old_term);
     struct sigaction action {};
-    action.sa_handler = [](int) { interrupted = 1; };
-    action.sa_flags = static_cast<int>(SA_RESETHAND);
-    sigaction(SIGINT, &action, &old_int_);
-    sigaction(SIGTERM, &action, &old_term_);
+    action.sa_handler = [](int) {
+      interrupted = 1;
+      restore_signals();
+    };
+    sigaction(SIGINT, &action, nullptr);
+    sigaction(SIGTERM, &action, nullptr);
   }
-  ~InterruptGuard() {
-    sigaction(SIGINT, &old_int_, nullptr);
-    sigaction(SIGTERM, &old_term_, nullptr);
-  }
+  ~InterruptGuard() { restore_signals(); }
   InterruptGuard(const InterruptGuard&) = delete;
   InterruptGuard& operator=(const InterruptGuard&) = delete;
-
- private:
-  struct sigaction old_int_ {};
-  struct sigaction old_term_ {};
 };
 
 }  // namespace

@@ -8,6 +8,8 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "cli/standard_streams.hpp"
+
 namespace sweepgrid::study {
 namespace {
 
@@ -20,7 +22,7 @@ StudyProgress::StudyProgress(std::string title, std::size_t points, double cost)
     : title_(std::move(title)), points_(points), cost_left_(cost), on_terminal_(isatty(STDERR_FILENO) == 1) {}
 
 StudyProgress::~StudyProgress() {
-  if (on_terminal_) fmt::print(stderr, "\r\x1b[K");
+  if (on_terminal_) show_on_stderr("\r\x1b[K");
 }
 
 void StudyProgress::begin(const std::string& point) { show(point); }
@@ -45,11 +47,11 @@ void StudyProgress::show(const std::string& point) {
   const std::string left = duration_text(remaining());
   if (on_terminal_) {
     const std::string bar(points_ == 0 ? kWidth : kWidth * done_ / points_, '#');
-    fmt::print(stderr, "\r\x1b[K{} [{:.<{}}] {}/{}, about {} left: {}", title_, bar, kWidth, done_, points_, left,
-               point);
+    show_on_stderr(
+        fmt::format("\r\x1b[K{} [{:.<{}}] {}/{}, about {} left: {}", title_, bar, kWidth, done_, points_, left, point));
     std::fflush(stderr);
   } else if (now - last_shown_ >= kPause) {
-    fmt::print(stderr, "{}: {} of {} points, about {} left; next: {}\n", title_, done_, points_, left, point);
+    show_on_stderr(fmt::format("{}: {} of {} points, about {} left; next: {}\n", title_, done_, points_, left, point));
     last_shown_ = now;
   }
 }

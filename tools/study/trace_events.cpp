@@ -35,7 +35,9 @@ std::string trace_events(const std::vector<TraceProcess>& processes) {
                         {"dur", kMicro * slice.duration}});
     }
   }
-  return Json{{"traceEvents", std::move(events)}, {"displayTimeUnit", "ns"}}.dump();
+  // Names of files need not be UTF-8.
+  return Json{{"traceEvents", std::move(events)}, {"displayTimeUnit", "ns"}}.dump(-1, ' ', false,
+                                                                                  Json::error_handler_t::replace);
 }
 
 }  // namespace sweepgrid::study

@@ -4,12 +4,14 @@
 #include <cstdio>
 #include <set>
 #include <stdexcept>
+#include <tuple>
 #include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "accuracy/narrow_phase.hpp"
+#include "cli/standard_streams.hpp"
 #include "scenes/open_scene.hpp"
 #include "study/accuracy/scene_charts.hpp"
 #include "study/accuracy/scene_tables.hpp"
@@ -127,30 +129,31 @@ bool accuracy_study(const AccuracyOptions& options) {
 bool accuracy_study(const AccuracyOptions& options, const AccuracySize& size) {
   const std::vector<std::string> scenes = scenes_of(options, size);
   const std::filesystem::path folder = make_out_folder(options.study);
+  check_study_files("accuracy", folder, scenes);
   // Which scenes are asked for is no parameter of a point.
   const nlohmann::json parameters = {
       {"steps", size.recorded_steps}, {"rounds", size.rounds}, {"most_pairs", size.most_pairs}};
   PointStore store(folder, Fingerprint::here("accuracy", parameters), options.study.points);
-  for (const std::string& note : store.notes()) fmt::print(stderr, "{}\n", note);
+  for (const std::string& note : store.notes()) show_on_stderr(fmt::format("{}\n", note));
   const std::vector<StudyPoint> points = study_points(scenes, options, size);
   measure_points("study accuracy", points, store);
   double price = options.narrow_cost.value_or(0);
   std::string source = "as given";
   std::vector<SceneResult> results;
   for (const StudyPoint& point : points) {
-    const nlohmann::json& found = *store.find(point.key);
-    if (point.key == kPrice) {
-      found.at("ns").get_to(price);
-      found.at("source").get_to(source);
-    } else {
-      results.push_back(scene_result_of(found));
+    if (point.key != kPrice) {
+      results.push_back(store.read(point.key, scene_result_of));
+      continue;
     }
+    std::tie(price, source) = store.read(point.key, [](const nlohmann::json& found) {
+      return std::pair(member_of<double>(found, "ns"), member_of<std::string>(found, "source"));
+    });
   }
   const ReportFiles files = write_report(accuracy_report(options, results, price, source), folder);
   fmt::print("{}\n", files.json.string());
   if (!files.html.empty()) fmt::print("{}\n", files.html.string());
   const std::vector<std::string> broken = all_broken(results);
-  for (const std::string& sentence : broken) fmt::print(stderr, "{}\n", sentence);
+  for (const std::string& sentence : broken) show_on_stderr(fmt::format("{}\n", sentence));
   return broken.empty();
 }
 

@@ -6,6 +6,7 @@
 
 #include "accuracy/accuracy_json.hpp"
 #include "measure/in_turn.hpp"
+#include "setup/json_text.hpp"
 #include "study/accuracy/play.hpp"
 
 namespace sweepgrid::study {
@@ -51,35 +52,37 @@ nlohmann::json configuration_json(const ConfigurationResult& result) {
 
 accuracy::DelayCounts delays_of(const nlohmann::json& json) {
   accuracy::DelayCounts delays;
-  for (const nlohmann::json& event : json.at("events")) delays.events[event.at(0)] = event.at(1);
+  for (const nlohmann::json& event : member_of<nlohmann::json>(json, "events"))
+    delays.events[event.at(0)] = event.at(1);
   return delays;
 }
 
 Accuracy accuracy_of(const nlohmann::json& json) {
   Accuracy result;
-  json.at("steps").get_to(result.steps);
-  json.at("true_pairs").get_to(result.true_pairs);
-  json.at("reported_pairs").get_to(result.reported_pairs);
-  json.at("missed_pairs").get_to(result.missed_pairs);
-  json.at("extra_pairs").get_to(result.extra_pairs);
-  json.at("true_contacts").get_to(result.true_contacts);
-  json.at("reported_contacts").get_to(result.reported_contacts);
-  json.at("answered_contacts").get_to(result.answered_contacts);
-  result.begins = delays_of(json.at("begins"));
-  result.ends = delays_of(json.at("ends"));
-  json.at("true_flicker").get_to(result.true_flicker);
-  json.at("reported_flicker").get_to(result.reported_flicker);
+  get_member(json, "steps", result.steps);
+  get_member(json, "true_pairs", result.true_pairs);
+  get_member(json, "reported_pairs", result.reported_pairs);
+  get_member(json, "missed_pairs", result.missed_pairs);
+  get_member(json, "extra_pairs", result.extra_pairs);
+  get_member(json, "true_contacts", result.true_contacts);
+  get_member(json, "reported_contacts", result.reported_contacts);
+  get_member(json, "answered_contacts", result.answered_contacts);
+  result.begins = delays_of(member_of<nlohmann::json>(json, "begins"));
+  result.ends = delays_of(member_of<nlohmann::json>(json, "ends"));
+  get_member(json, "true_flicker", result.true_flicker);
+  get_member(json, "reported_flicker", result.reported_flicker);
   return result;
 }
 
 ConfigurationResult configuration_of(const nlohmann::json& json) {
   ConfigurationResult result;
-  json.at("name").get_to(result.name);
-  json.at("given_up").get_to(result.given_up);
-  json.at("step_ms").get_to(result.step_ms);
-  json.at("violations").get_to(result.violations);
-  json.at("candidates").get_to(result.candidates);
-  for (const nlohmann::json& one : json.at("accuracies")) result.accuracies.push_back(accuracy_of(one));
+  get_member(json, "name", result.name);
+  get_member(json, "given_up", result.given_up);
+  get_member(json, "step_ms", result.step_ms);
+  get_member(json, "violations", result.violations);
+  get_member(json, "candidates", result.candidates);
+  for (const nlohmann::json& one : member_of<nlohmann::json>(json, "accuracies"))
+    result.accuracies.push_back(accuracy_of(one));
   return result;
 }
 
@@ -141,14 +144,15 @@ nlohmann::json scene_result_json(const SceneResult& result) {
 
 SceneResult scene_result_of(const nlohmann::json& json) {
   SceneResult result;
-  json.at("name").get_to(result.name);
-  json.at("objects").get_to(result.objects);
-  json.at("steps").get_to(result.steps);
-  json.at("width").get_to(result.width);
-  for (const int kind : json.at("truths").get<std::vector<int>>()) {
+  get_member(json, "name", result.name);
+  get_member(json, "objects", result.objects);
+  get_member(json, "steps", result.steps);
+  get_member(json, "width", result.width);
+  for (const int kind : member_of<std::vector<int>>(json, "truths")) {
     result.truths.push_back(static_cast<TruthKind>(kind));
   }
-  for (const nlohmann::json& one : json.at("configurations")) result.configurations.push_back(configuration_of(one));
+  for (const nlohmann::json& one : member_of<nlohmann::json>(json, "configurations"))
+    result.configurations.push_back(configuration_of(one));
   return result;
 }
 

@@ -10,6 +10,7 @@
 
 #include "measure/in_turn.hpp"
 #include "measure/stopwatch.hpp"
+#include "setup/json_text.hpp"
 
 namespace sweepgrid::study {
 namespace {
@@ -70,15 +71,15 @@ json work_json(const Work& work) {
 
 Work work_of(const json& from) {
   Work work;
-  work.cells.swaps = from.at("swaps");
-  work.cells.box_tests = from.at("box_tests");
-  work.cells.deltas = from.at("deltas");
-  work.cells.local_sorts = from.at("local_sorts");
-  work.cells.global_sorts = from.at("global_sorts");
-  work.updates = from.at("updates");
-  work.cell_ops = from.at("cell_ops");
-  work.cells_drained = from.at("cells_drained");
-  work.events = from.at("events");
+  get_member(from, "swaps", work.cells.swaps);
+  get_member(from, "box_tests", work.cells.box_tests);
+  get_member(from, "deltas", work.cells.deltas);
+  get_member(from, "local_sorts", work.cells.local_sorts);
+  get_member(from, "global_sorts", work.cells.global_sorts);
+  get_member(from, "updates", work.updates);
+  get_member(from, "cell_ops", work.cell_ops);
+  get_member(from, "cells_drained", work.cells_drained);
+  get_member(from, "events", work.events);
   return work;
 }
 
@@ -128,11 +129,16 @@ json to_json(const Contest& contest) {
 
 Contest contest_of(const json& from) {
   Contest contest;
-  contest.scene = from.at("scene");
-  contest.pairs = from.at("pairs");
-  for (const auto& one : from.at("entries")) {
-    contest.entries.push_back({one.at("system"), one.at("x"), one.at("seconds"), work_of(one.at("work")),
-                               one.at("steps"), one.at("complaint")});
+  get_member(from, "scene", contest.scene);
+  get_member(from, "pairs", contest.pairs);
+  for (const auto& one : member_of<nlohmann::json>(from, "entries")) {
+    Entry& entry = contest.entries.emplace_back();
+    get_member(one, "system", entry.system);
+    get_member(one, "x", entry.x);
+    get_member(one, "seconds", entry.seconds);
+    entry.work = work_of(member_of<json>(one, "work"));
+    get_member(one, "steps", entry.steps);
+    get_member(one, "complaint", entry.complaint);
   }
   return contest;
 }

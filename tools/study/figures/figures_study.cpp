@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "cli/standard_streams.hpp"
 #include "study/figures/claim.hpp"
 #include "study/figures/figure_plans.hpp"
 #include "study/figures/figure_sections.hpp"
@@ -77,12 +78,13 @@ bool figures_study(const FiguresOptions& options) {
 
 bool figures_study(const FiguresOptions& options, const std::vector<FigurePoint>& points) {
   const std::filesystem::path folder = make_out_folder(options.study);
+  check_study_files("figures", folder);
   // Which figures are asked for is no parameter of a point.
   PointStore store(folder, Fingerprint::here("figures", {{"quick", options.study.quick}}), options.study.points);
-  for (const std::string& note : store.notes()) fmt::print(stderr, "{}\n", note);
+  for (const std::string& note : store.notes()) show_on_stderr(fmt::format("{}\n", note));
   measure_points("study figures", study_points(points), store);
   Results results;
-  for (const FigurePoint& point : points) results.add(point.figure, contest_of(*store.find(point_key(point))));
+  for (const FigurePoint& point : points) results.add(point.figure, store.read(point_key(point), contest_of));
   const ReportFiles files = write_report(make_report(options, results), folder);
   fmt::print("{}\n", files.json.string());
   if (!files.html.empty()) fmt::print("{}\n", files.html.string());

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "setup/json_text.hpp"
+
 namespace sweepgrid::study {
 namespace {
 
@@ -12,14 +14,14 @@ double sum(const std::vector<double>& values) { return std::accumulate(values.be
 
 MeasuredThreads measured_of(const Json& json, std::uint64_t checksum) {
   MeasuredThreads result;
-  json.at("threads").get_to(result.threads);
-  result.seconds = sum(json.at("step_s"));
-  json.at("round_s").get_to(result.round_seconds);
-  json.at("part_s").get_to(result.part_seconds);
-  json.at("busy_s").get_to(result.busy);
-  json.at("predicted").get_to(result.predicted);
-  json.at("replayed").get_to(result.replayed);
-  for (const std::uint64_t found : json.at("checksums").get<std::vector<std::uint64_t>>()) {
+  get_member(json, "threads", result.threads);
+  result.seconds = sum(member_of<std::vector<double>>(json, "step_s"));
+  get_member(json, "round_s", result.round_seconds);
+  get_member(json, "part_s", result.part_seconds);
+  get_member(json, "busy_s", result.busy);
+  get_member(json, "predicted", result.predicted);
+  get_member(json, "replayed", result.replayed);
+  for (const std::uint64_t found : member_of<std::vector<std::uint64_t>>(json, "checksums")) {
     result.same_events = result.same_events && found == checksum;
   }
   return result;
@@ -27,9 +29,9 @@ MeasuredThreads measured_of(const Json& json, std::uint64_t checksum) {
 
 TimelineFindings timeline_of(const Json& json) {
   TimelineFindings result;
-  json.at("workers").get_to(result.workers);
-  json.at("stages").get_to(result.stages);
-  for (const Json& task : json.at("tasks")) {
+  get_member(json, "workers", result.workers);
+  get_member(json, "stages", result.stages);
+  for (const Json& task : member_of<nlohmann::json>(json, "tasks")) {
     result.tasks.push_back({task.at(0), task.at(1), task.at(2), task.at(3), task.at(4)});
   }
   return result;
@@ -38,23 +40,44 @@ TimelineFindings timeline_of(const Json& json) {
 void add_what_ifs(const ScalingPlan& plan, const PointStore& store, SceneFindings& scene) {
   scene.what_if_workers = plan.what_if_workers;
   for (const int population : plan.populations) {
-    const Json& point = *store.find(scaling_key::population(scene.name, population));
-    scene.what_ifs.push_back({"population", static_cast<double>(population), point.get<Prediction>()});
+    scene.what_ifs.push_back({"population", static_cast<double>(population),
+                              store.get<Prediction>(scaling_key::population(scene.name, population))});
   }
-  for (const Json& variant : *store.find(scaling_key::cut(scene.name))) {
-    scene.what_ifs.push_back({variant.at("what"), variant.at("factor"), variant.at("predicted").get<Prediction>()});
-  }
+  store.read(scaling_key::cut(scene.name), [&scene](const Json& variants) {
+    for (const Json& variant : variants) {
+      scene.what_ifs.push_back({member_of<std::string>(variant, "what"), member_of<double>(variant, "factor"),
+                                member_of<Prediction>(variant, "predicted")});
+    }
+  });
 }
 
 void add_weak(const ScalingPlan& plan, const PointStore& store, SceneFindings& scene) {
   for (const int workers : plan.weak_workers(scene.name)) {
-    const Json& point = *store.find(scaling_key::weak(scene.name, workers));
     WeakFindings& added = scene.weak.emplace_back();
     added.workers = workers;
-    point.at("objects").get_to(added.objects);
-    if (point.contains("step_s")) added.measured_seconds = sum(point.at("step_s"));
-    point.at("predicted").get_to(added.predicted);
+    store.read(scaling_key::weak(scene.name, workers), [&added](const Json& point) {
+      get_member(point, "objects", added.objects);
+      if (point.contains("step_s")) added.measured_seconds = sum(member_of<std::vector<double>>(point, "step_s"));
+      get_member(point, "predicted", added.predicted);
+    });
   }
+}
+
+void take_checked(const Json& checked, SceneFindings& scene) {
+  get_member(checked, "ok", scene.ok);
+  get_member(checked, "error", scene.error);
+  get_member(checked, "checksum", scene.checksum);
+  get_member(checked, "steps_checked", scene.steps_checked);
+  get_member(checked, "pairs", scene.pairs_checked);
+}
+
+void take_measured(const Json& measured, SceneFindings& scene) {
+  get_member(measured, "objects", scene.objects);
+  get_member(measured, "steps", scene.steps);
+  get_member(measured, "events", scene.events);
+  get_member(measured, "stages", scene.stages);
+  for (const Json& run : member_of<nlohmann::json>(measured, "runs"))
+    scene.measured.push_back(measured_of(run, scene.checksum));
 }
 
 }  // namespace
@@ -82,25 +105,15 @@ std::vector<SceneFindings> scaling_findings(const ScalingPlan& plan, const Point
   for (const std::string& name : plan.scenes) {
     SceneFindings& scene = scenes.emplace_back();
     scene.name = name;
-    const Json& checked = *store.find(scaling_key::checked(name));
-    checked.at("ok").get_to(scene.ok);
-    checked.at("error").get_to(scene.error);
-    checked.at("checksum").get_to(scene.checksum);
-    checked.at("steps_checked").get_to(scene.steps_checked);
-    checked.at("pairs").get_to(scene.pairs_checked);
-    const Json& measured = *store.find(scaling_key::measured(name));
-    measured.at("objects").get_to(scene.objects);
-    measured.at("steps").get_to(scene.steps);
-    measured.at("events").get_to(scene.events);
-    measured.at("stages").get_to(scene.stages);
-    for (const Json& run : measured.at("runs")) scene.measured.push_back(measured_of(run, scene.checksum));
-    store.find(scaling_key::memory(name))->at("shares").get_to(scene.memory);
+    store.read(scaling_key::checked(name), [&scene](const Json& point) { take_checked(point, scene); });
+    store.read(scaling_key::measured(name), [&scene](const Json& point) { take_measured(point, scene); });
+    store.read(scaling_key::memory(name), [&scene](const Json& point) { get_member(point, "shares", scene.memory); });
     for (const int workers : plan.simulate) {
-      scene.predicted[workers] = store.find(scaling_key::predicted(name, workers))->get<Prediction>();
+      scene.predicted[workers] = store.get<Prediction>(scaling_key::predicted(name, workers));
     }
     add_what_ifs(plan, store, scene);
     if (plan.weak) add_weak(plan, store, scene);
-    scene.timeline = timeline_of(*store.find(scaling_key::timeline(name)));
+    scene.timeline = store.read(scaling_key::timeline(name), timeline_of);
   }
   return scenes;
 }

@@ -163,10 +163,11 @@ const SceneScript& ScalingBench::scene(const std::string& name) {
   return scene_;
 }
 
-MachineCosts ScalingBench::costs() const { return store_.find(scaling_key::kCosts)->get<MachineCosts>(); }
+MachineCosts ScalingBench::costs() const { return store_.get<MachineCosts>(scaling_key::kCosts); }
 
 MemoryShares ScalingBench::shares(const std::string& scene) const {
-  return store_.find(scaling_key::memory(scene))->at("shares").get<MemoryShares>();
+  return store_.read(scaling_key::memory(scene),
+                     [](const Json& point) { return member_of<MemoryShares>(point, "shares"); });
 }
 
 // One thread works alone and beside one that copies memory, in turn; medians, because both are about what is shared.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "setup/json_text.hpp"
+
 namespace sweepgrid::study {
 namespace {
 
@@ -79,15 +81,16 @@ void to_json(nlohmann::json& out, const Prediction& prediction) {
 }
 
 void from_json(const nlohmann::json& in, Prediction& prediction) {
-  in.at("workers").get_to(prediction.workers);
-  in.at("work_s").get_to(prediction.work);
-  in.at("span_s").get_to(prediction.span);
-  in.at("serial_s").get_to(prediction.serial);
-  in.at("step_s").get_to(prediction.step_seconds);
+  get_member(in, "workers", prediction.workers);
+  get_member(in, "work_s", prediction.work);
+  get_member(in, "span_s", prediction.span);
+  get_member(in, "serial_s", prediction.serial);
+  get_member(in, "step_s", prediction.step_seconds);
   prediction.stages.clear();
-  for (const auto& stage : in.at("stages")) {
-    prediction.stages.push_back({stage.at("name"), stage.at("work_s"), stage.at("serial_s"), stage.at("wall_s"),
-                                 stage.at("longest_s"), stage.at("tasks")});
+  for (const auto& stage : member_of<nlohmann::json>(in, "stages")) {
+    prediction.stages.push_back({member_of<std::string>(stage, "name"), member_of<double>(stage, "work_s"),
+                                 member_of<double>(stage, "serial_s"), member_of<double>(stage, "wall_s"),
+                                 member_of<double>(stage, "longest_s"), member_of<double>(stage, "tasks")});
   }
 }
 

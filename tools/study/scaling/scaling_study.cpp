@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <optional>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "cli/output_file.hpp"
+#include "cli/output_place.hpp"
+#include "cli/standard_streams.hpp"
 #include "study/report_files.hpp"
 #include "study/scaling/findings.hpp"
 #include "study/scaling/scene_section.hpp"
@@ -150,31 +153,31 @@ Report make_report(const ScalingOptions& options, const std::vector<SceneFinding
   return report;
 }
 
-void print_summary(const std::vector<SceneFindings>& scenes) {
+void print_summary(std::FILE* out, const std::vector<SceneFindings>& scenes) {
   for (const SceneFindings& scene : scenes) {
-    fmt::print("{}\n", scene.name);
+    fmt::print(out, "{}\n", scene.name);
     const auto steps = static_cast<double>(scene.steps);
     for (const MeasuredThreads& run : scene.measured) {
       fmt::print(
+          out,
           "  {:>3} threads  measured {:9.3f} ms, speed-up {:5.2f}; simulated {:9.3f} ms, {:+.1f} %, replayed {:+.1f} "
           "%\n",
           run.threads, kMilli * run.seconds / steps, scene.measured.front().seconds / run.seconds,
           kMilli * run.predicted_seconds() / steps, kPercent * run.error(), kPercent * run.replay_error());
     }
     for (const auto& [workers, prediction] : scene.predicted) {
-      fmt::print("  {:>3} workers  simulated:", workers);
+      fmt::print(out, "  {:>3} workers  simulated:", workers);
       for (const Forecast& forecast : kForecasts) {
-        fmt::print(" {} {:.1f}{}", forecast.name, scene.predicted_speedup(workers, forecast.id),
+        fmt::print(out, " {} {:.1f}{}", forecast.name, scene.predicted_speedup(workers, forecast.id),
                    &forecast == &kForecasts.back() ? "\n" : ",");
       }
     }
-    fmt::print("  {}\n", scene.exact() ? "exact" : "NOT EXACT");
+    fmt::print(out, "  {}\n", scene.exact() ? "exact" : "NOT EXACT");
   }
 }
 
 // The last step of the first scene: as it ran on all threads, and as it is simulated.
-void write_trace(const std::string& path, const ScalingPlan& plan, ScalingBench& bench) {
-  OutputFile file(path);
+void write_trace(OutputFile& file, const ScalingPlan& plan, ScalingBench& bench) {
   const std::string& scene = plan.scenes.front();
   const auto lanes = [](int workers) {
     std::vector<std::string> names;
@@ -210,17 +213,22 @@ std::vector<std::string> scaling_scenes() {
 
 bool scaling_study(const ScalingOptions& options) {
   const std::filesystem::path folder = make_out_folder(options.study);
+  check_study_files("scaling", folder, options.scenes, {"--trace", options.trace});
   const ScalingPlan plan = ScalingPlan::of(options);
+  // Opened before the work, so that a path that cannot be written to costs none.
+  std::optional<OutputFile> trace;
+  if (!options.trace.empty()) trace.emplace(options.trace);
   PointStore store(folder, Fingerprint::here("scaling", plan.parameters()), options.study.points);
-  for (const std::string& note : store.notes()) fmt::print(stderr, "{}\n", note);
+  for (const std::string& note : store.notes()) show_on_stderr(fmt::format("{}\n", note));
   ScalingBench bench(plan, store);
   measure_points("study scaling", bench.points(), store);
   const std::vector<SceneFindings> scenes = scaling_findings(plan, store);
-  const Report report = make_report(options, scenes, store.find(scaling_key::kCosts)->get<MachineCosts>());
+  const Report report = make_report(options, scenes, store.get<MachineCosts>(scaling_key::kCosts));
   const ReportFiles files = write_report(report, folder);
-  if (!options.trace.empty()) write_trace(options.trace, plan, bench);
-  print_summary(scenes);
-  fmt::print("{}\n", files.html.empty() ? files.json.string() : files.html.string());
+  if (trace) write_trace(*trace, plan, bench);
+  std::FILE* const for_people = is_standard_output(options.trace) ? stderr : stdout;
+  print_summary(for_people, scenes);
+  fmt::print(for_people, "{}\n", files.html.empty() ? files.json.string() : files.html.string());
   return std::all_of(scenes.begin(), scenes.end(), [](const SceneFindings& scene) { return scene.exact(); });
 }
 

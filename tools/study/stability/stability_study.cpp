@@ -10,6 +10,7 @@
 
 #include "accuracy/methods.hpp"
 #include "accuracy/regimes.hpp"
+#include "cli/standard_streams.hpp"
 #include "study/point_store.hpp"
 #include "study/report_files.hpp"
 #include "study/study_points.hpp"
@@ -97,7 +98,7 @@ std::pair<StabilityResults, bool> collect(const StabilitySize& size, const std::
   bool exact = true;
   std::map<std::string, SceneTrials> rest;
   for (const StudyPoint& point : points) {
-    rest[point.key] = trials_of(*store.find(point.key));
+    rest[point.key] = store.read(point.key, trials_of);
     exact = exact && engine_is_exact(rest[point.key]);
   }
   const auto take = [&rest](const std::string& key) { return std::move(rest.extract(key).mapped()); };
@@ -152,11 +153,12 @@ bool stability_study(const StudyOptions& options) { return stability_study(optio
 
 bool stability_study(const StudyOptions& options, const StabilitySize& size) {
   const std::filesystem::path folder = make_out_folder(options);
+  check_study_files("stability", folder);
   const nlohmann::json parameters = {{"objects", size.objects},    {"steps", size.steps},
                                      {"bytes", size.budget.bytes}, {"seconds", size.budget.seconds},
                                      {"growing", size.growing},    {"growing_steps", size.growing_steps}};
   PointStore store(folder, Fingerprint::here("stability", parameters), options.points);
-  for (const std::string& note : store.notes()) fmt::print(stderr, "{}\n", note);
+  for (const std::string& note : store.notes()) show_on_stderr(fmt::format("{}\n", note));
   const std::vector<StudyPoint> points = study_points(size);
   measure_points("study stability", points, store);
   const auto [results, exact] = collect(size, points, store);

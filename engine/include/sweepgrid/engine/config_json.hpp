@@ -15,7 +15,8 @@
 //
 // Members have the names that they have in the structs. What is absent has its default, and so have members of type
 // std::optional that are null. A member that the struct has not, and a value out of its range, throw
-// std::invalid_argument that names the member. An executor has no JSON: what is read leaves it alone.
+// std::invalid_argument that names the member; nothing here recurses into what it does not know, however deeply JSON is
+// nested. An executor has no JSON: what is read leaves it alone.
 namespace sweepgrid {
 
 // What values are called, in JSON as on command lines.
@@ -110,7 +111,7 @@ void from_json(const BasicJson& json, Config& config) {
   members.read("reduction", read.reduction);
   members.read("envelope", read.envelope);
   members.read("step_bytes", read.step_bytes, std::uint64_t{0});
-  members.read("threads", read.threads, 0);
+  members.read("threads", read.threads, 0, 65536);
   members.finish();
   config = std::move(read);
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -65,11 +66,9 @@ class JsonMembers {
     const bool good = found->is_number_unsigned()  ? fits(found->template get<std::uint64_t>())
                       : found->is_number_integer() ? fits(found->template get<std::int64_t>())
                                                    : false;
-    const bool open = most == std::numeric_limits<Integer>::max();
     if (!good) {
-      refuse(
-          name, *found,
-          "a whole number of at least " + std::to_string(least) + (open ? "" : " and at most " + std::to_string(most)));
+      refuse(name, *found,
+             "a whole number of at least " + std::to_string(least) + " and at most " + std::to_string(most));
     }
     value = found->template get<Integer>();
   }
@@ -137,9 +136,17 @@ class JsonMembers {
     const auto found = json_.find(name);
     return found == json_.end() ? nullptr : &*found;
   }
-  // What came from a file may be no UTF-8.
+  // Printing recurses, so what is nested deeply could overflow the stack. And what came from a file may be no UTF-8.
   static std::string text(const BasicJson& json) {
+    constexpr int kDeepest = 64;
+    if (is_deeper(json, kDeepest)) return "nested more than " + std::to_string(kDeepest) + " levels deep";
     return json.dump(-1, ' ', false, BasicJson::error_handler_t::replace);
+  }
+
+  static bool is_deeper(const BasicJson& json, int levels) {
+    if (!json.is_structured()) return false;
+    return levels == 0 || std::any_of(json.begin(), json.end(),
+                                      [levels](const BasicJson& item) { return is_deeper(item, levels - 1); });
   }
 
   const BasicJson& json_;

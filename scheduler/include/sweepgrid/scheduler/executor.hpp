@@ -34,7 +34,7 @@ class Executor {
 
 /// `threads` workers, the caller included; 0 means as many as the machine has, 1 is the serial executor. More than the
 /// machine has are really started (oversubscribed), unless the host limits oneTBB's parallelism itself. Throws
-/// std::invalid_argument when negative.
+/// std::invalid_argument when negative or above 65536.
 [[nodiscard]] std::shared_ptr<Executor> make_executor(int threads);
 
 }  // namespace sweepgrid
