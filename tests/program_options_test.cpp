@@ -57,7 +57,7 @@ TEST_F(ProgramOptions, RefuseWhatIsNoNumberOfTheirRange) {
       {"run SCENE --diameter", "a finite number from 0 to 1.79769e+308"},
       {"run SCENE --cell-size", "a positive finite number or 'auto' (numbers go above 0, at most 1.79769e+308)"},
       {"run SCENE --cell-population", "a positive whole number or 'auto' (numbers go from 1 to 2147483647)"},
-      {"run SCENE --segment-capacity", "a whole number from 4 to 1073741824"},
+      {"run SCENE --segment-capacity", "a whole number from 4 to 65536"},
       {"info SCENE --steps", "a whole number from 0 to 18446744073709551615"},
       {"info SCENE --diameter", "a finite number from 0 to 1.79769e+308"},
       {"tune SCENE --steps", "a whole number from 1 to 18446744073709551615"},
