@@ -34,6 +34,7 @@ readonly build_packages=(
   g++ cmake ninja-build libtbb-dev libhwy-dev libcli11-dev nlohmann-json3-dev libfmt-dev
   libboost-dev zlib1g-dev liblzma-dev libzstd-dev "${report_packages[@]}")
 readonly test_packages=(libgtest-dev libeigen3-dev librapidcheck-dev libbenchmark-dev libbullet-dev)
+readonly fuzz_packages=(clang-14 libclang-rt-14-dev llvm-14)
 
 # install_packages <package>...: asks apt for those that are missing, and for nothing when none is.
 install_packages() {
