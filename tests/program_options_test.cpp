@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -38,11 +39,11 @@ TEST(NumberText, RefusesTheRestWithTheRange) {
   const NumberRange<int> range{1, 100};
   for (const char* text : {"", " 1", "1 ", "1,0", "0x1", "1e1", "1.5", "+-1", "++1", "true", "0", "101", "-1",
                            "4294967297", "99999999999999999999", "auto"}) {
-    EXPECT_EQ(refusal(text, range), "'" + std::string(text) + "' is not a whole number from 1 to 100");
+    EXPECT_EQ(refusal(text, range), fmt::format("'{}' is not a whole number from 1 to 100", text));
   }
   for (const char* text : {"inf", "-inf", "nan", "NaN", "1e309", "1e-400", "0x1p3", "1.5x", "1,5", "-1", "", "+"}) {
     EXPECT_EQ(refusal(text, NumberRange<double>{}),
-              "'" + std::string(text) + "' is not a finite number from 0 to 1.79769e+308");
+              fmt::format("'{}' is not a finite number from 0 to 1.79769e+308", text));
   }
   EXPECT_EQ(refusal("0", NumberRange<double>{.without_least = true, .auto_too = true}),
             "'0' is not a positive finite number or 'auto' (numbers go above 0, at most 1.79769e+308)");
