@@ -57,6 +57,7 @@ template <class Value, class Take>
 CLI::Option* add_choice(CLI::App& command, const std::string& name, const std::map<std::string, Value>& values,
                         Take take, const std::string& description) {
   std::vector<std::string> names;
+  names.reserve(values.size());
   for (const auto& [known, value] : values) names.push_back(known);
   const auto read = [name, values, names, take = std::move(take)](const std::string& text) {
     const auto found = values.find(text);
