@@ -66,10 +66,14 @@ TEST(StableVector, GivesBackWholeBlocksAndGrowsAgain) {
   EXPECT_EQ(vector.bytes(), 0u);
 }
 
-TEST(StableVector, CountsWhatIsAskedFor) {
+TEST(StableVector, CountsWholeBlocks) {
   StableVector<std::uint64_t> vector;
+  vector.grow(1);
+  EXPECT_EQ(vector.bytes(), 512 * sizeof(std::uint64_t));
   vector.grow(1025);
-  EXPECT_EQ(vector.bytes(), 1025 * sizeof(std::uint64_t));
+  EXPECT_EQ(vector.bytes(), 2048 * sizeof(std::uint64_t));
+  vector.shrink(1024);
+  EXPECT_EQ(vector.bytes(), 1024 * sizeof(std::uint64_t));
 }
 
 // ---- ObjectTable

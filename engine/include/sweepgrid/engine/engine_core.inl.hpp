@@ -198,6 +198,7 @@ Stats EngineCore<Scalar, Dim>::stats() const {
   stats.pairs = pairs_;
   stats.cell_size = levels_.cell_size();
   stats.grids = levels_.live().size();
+  stats.bytes_cells = levels_.bytes();
   for (const GridIndex index : levels_.live()) {
     const GridType& grid = levels_.grid(index);
     stats.cells += grid.cell_count();

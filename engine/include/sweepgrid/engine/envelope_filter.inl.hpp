@@ -166,8 +166,8 @@ void EnvelopeFilter<Scalar, Dim>::apply(std::size_t task) noexcept {
 
 template <class Scalar, int Dim>
 std::size_t EnvelopeFilter<Scalar, Dim>::bytes() const {
-  std::size_t bytes = lists_.bytes() + trace_.capacity() * sizeof(TaskRecord) + tasks_.capacity() * sizeof(Task) +
-                      shards_.capacity() * sizeof(CandidateLists::Shard);
+  std::size_t bytes = sizeof(*this) + lists_.bytes() + graph_->bytes() + trace_.capacity() * sizeof(TaskRecord) +
+                      tasks_.capacity() * sizeof(Task) + shards_.capacity() * sizeof(CandidateLists::Shard);
   for (const Task& task : tasks_) bytes += (task.begins.capacity() + task.ends.capacity()) * sizeof(PairKey);
   for (const CandidateLists::Shard& shard : shards_) bytes += shard.bytes();
   return bytes;

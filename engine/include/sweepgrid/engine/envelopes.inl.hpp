@@ -319,7 +319,8 @@ void Envelopes<Scalar, Dim>::trim(std::uint64_t bound) {
 template <class Scalar, int Dim>
 std::size_t Envelopes<Scalar, Dim>::bytes() const {
   const auto of = [](const auto& list) { return list.capacity() * sizeof(list[0]); };
-  std::size_t bytes = records_.bytes() + states_.bytes() + others_.bytes() + speeds_.bytes() + marks_.bytes();
+  std::size_t bytes =
+      sizeof(*this) + records_.bytes() + states_.bytes() + others_.bytes() + speeds_.bytes() + marks_.bytes();
   bytes += of(granules_) + of(outside_) + of(report_.outside) + of(blocks_);
   for (const Block& block : blocks_) bytes += of(block.outside) + of(block.seen) + of(block.first);
   return bytes;

@@ -299,7 +299,7 @@ Stats KeyedEngine<Scalar, Dim>::stats() const {
   Parts& p = parts("stats");
   Stats stats = p.core.stats();
   stats.bytes_objects += p.keys.bytes();
-  stats.bytes_queues += p.order.bytes();
+  stats.bytes_queues += sizeof(Parts) + p.order.bytes();
   if (p.envelopes) add_envelope_stats(stats);
   return stats;
 }

@@ -168,7 +168,7 @@ class ObjectTable {
   /// gives their memory back; returns whether it did. Handles of what lived there stay stale. O(1), seldom O(bound()).
   bool trim();
 
-  /// Memory in use: see StableVector::bytes().
+  /// Heap bytes held.
   [[nodiscard]] std::size_t bytes() const {
     return records_.bytes() + states_.bytes() + marks_.bytes() + free_.capacity() * sizeof(ObjectId);
   }

@@ -27,8 +27,8 @@ class StableBlocks {
   /// Gives back the blocks that lie wholly beyond the first `size` elements. Not thread-safe beside anything.
   void shrink(std::uint64_t size);
 
-  /// Memory in use. What was never asked for of the last block has addresses, but no pages, and does not count.
-  [[nodiscard]] std::size_t bytes() const { return static_cast<std::size_t>(size()) * element_size_; }
+  /// Heap bytes held: whole blocks. Not thread-safe beside grow().
+  [[nodiscard]] std::size_t bytes() const { return static_cast<std::size_t>(capacity_) * element_size_; }
 
   /// Of the element. In the innermost loops: a few instructions and no branch. `element_size`: what it was made with.
   [[nodiscard]] void* address(std::uint32_t index, std::size_t element_size) const {

@@ -47,7 +47,7 @@ struct Stats {
   double cell_size = 0;   ///< of the finest grid, world units
   std::size_t pairs = 0;  ///< overlapping now
 
-  /// Heap bytes held now, unused capacity included.
+  /// Heap bytes held now, unused capacity included; neither what keys hold of their own, nor what oneTBB does.
   std::size_t bytes_objects = 0;
   std::size_t bytes_cells = 0;
   std::size_t bytes_queues = 0;

@@ -73,6 +73,12 @@ class Levels {
     return size_a != size_b ? size_a > size_b : a > b;
   }
 
+  /// Heap bytes held beside what the grids say of themselves.
+  [[nodiscard]] std::size_t bytes() const {
+    return live_.size() * sizeof(GridType) + grids_.capacity() * sizeof(grids_[0]) +
+           widest_.capacity() * sizeof(widest_[0]) + live_.capacity() * sizeof(live_[0]);
+  }
+
   /// Drops the grids that have no cell: of older families, and if `homes_too` of the newest, but for its finest. Those
   /// of the newest are to stay as long as objects are on their way to them. Returns how wide a box now has a home.
   double drop_empty(bool homes_too);

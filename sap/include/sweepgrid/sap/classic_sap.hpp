@@ -150,7 +150,7 @@ bool ClassicSap<Scalar, Dim>::erased_last(Key a, Key b) const {
 
 template <class Scalar, int Dim>
 std::size_t ClassicSap<Scalar, Dim>::bytes() const {
-  std::size_t bytes = slots_.bytes() + boxes_.capacity() * sizeof(boxes_[0]) + change_.capacity();
+  std::size_t bytes = sizeof(*this) + slots_.bytes() + boxes_.capacity() * sizeof(boxes_[0]) + change_.capacity();
   for (const std::vector<Key>& list : lists_) bytes += list.capacity() * sizeof(Key);
   return bytes;
 }

@@ -28,7 +28,8 @@ class SweepingPlane final : public SweepAndPrune<Scalar, Dim> {
   void drain(std::span<const Op> ops, DeltaList& deltas, SapCounters& counters) override;
   [[nodiscard]] std::size_t size() const override { return slots_.size(); }
   [[nodiscard]] std::size_t bytes() const override {
-    return slots_.bytes() + boxes_.capacity() * sizeof(boxes_[0]) + overlaps_.capacity() * sizeof(PairKey);
+    return sizeof(*this) + slots_.bytes() + boxes_.capacity() * sizeof(boxes_[0]) +
+           overlaps_.capacity() * sizeof(PairKey);
   }
   void append_residents(std::vector<Resident>& residents) const override;
 
