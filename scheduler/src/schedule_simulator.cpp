@@ -35,7 +35,7 @@ struct Worker {
   double left = 0;  // seconds at full speed
 };
 
-struct Stage {
+struct SimulatedStage {
   std::vector<std::uint32_t> before;  // stages that wait for this one
   std::uint32_t waits_for = 0;
   std::size_t tasks_left = 0;
@@ -61,7 +61,7 @@ class Simulation {
   Schedule run();
 
  private:
-  void order_tasks(Stage& stage, const std::vector<WorkTask>& tasks) const;
+  void order_tasks(SimulatedStage& stage, const std::vector<WorkTask>& tasks) const;
   void handle(const Event& event);
   void stage_ready(std::uint32_t stage);
   void open_stage(std::uint32_t worker, std::uint32_t stage);
@@ -85,7 +85,7 @@ class Simulation {
   ScheduleCosts costs_;
   double barrier_ = 0;
   std::vector<Worker> workers_;
-  std::vector<Stage> stages_;
+  std::vector<SimulatedStage> stages_;
   std::deque<std::pair<std::uint32_t, std::uint32_t>> longest_;  // stage and task, for kLongestFirst
   std::size_t offers_ = 0;                                       // in the queues of all workers
   std::priority_queue<Event, std::vector<Event>, std::greater<>> events_;
@@ -106,7 +106,7 @@ Simulation::Simulation(const WorkGraph& graph, int workers, SchedulePolicy polic
   }
   stages_.resize(graph.size());
   for (std::uint32_t id = 0; id < graph.size(); ++id) {
-    Stage& stage = stages_[id];
+    SimulatedStage& stage = stages_[id];
     stage.waits_for = static_cast<std::uint32_t>(graph[id].after.size());
     stage.tasks_left = graph[id].tasks.size();
     for (const std::uint32_t earlier : graph[id].after) stages_[earlier].before.push_back(id);
@@ -116,7 +116,7 @@ Simulation::Simulation(const WorkGraph& graph, int workers, SchedulePolicy polic
   schedule_.busy.resize(workers_.size());
 }
 
-void Simulation::order_tasks(Stage& stage, const std::vector<WorkTask>& tasks) const {
+void Simulation::order_tasks(SimulatedStage& stage, const std::vector<WorkTask>& tasks) const {
   stage.order.resize(tasks.size());
   std::iota(stage.order.begin(), stage.order.end(), std::uint32_t{0});
   if (policy_ == SchedulePolicy::kLongestFirst) {

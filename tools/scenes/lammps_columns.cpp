@@ -11,8 +11,6 @@
 namespace sweepgrid {
 namespace {
 
-constexpr std::string_view kBlanks = " \t";
-
 // std::from_chars takes no plus.
 std::string_view without_plus(std::string_view word) {
   if (word.size() > 1 && word[0] == '+' && word[1] != '-') word.remove_prefix(1);

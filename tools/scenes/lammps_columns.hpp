@@ -12,6 +12,9 @@
 
 namespace sweepgrid {
 
+/// What separates words in a dump.
+inline constexpr std::string_view kBlanks = " \t";
+
 /// Which columns of a dump's `ITEM: ATOMS` line make an object, and how.
 class LammpsColumns {
  public:

@@ -13,7 +13,6 @@ namespace sweepgrid {
 namespace {
 
 constexpr std::uint64_t kAtomsToReserve = 1 << 16;  // a wrong count must not cost more
-constexpr std::string_view kBlanks = " \t";
 
 // The rest of `line` behind `item`, or nothing. There may be more blanks, or tabs, than in `item`.
 std::optional<std::string_view> after_item(std::string_view line, std::string_view item) {
