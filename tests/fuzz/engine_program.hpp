@@ -25,8 +25,8 @@
 
 #include "../engine_model.hpp"
 #include "../envelope_play.hpp"
+#include "../watched_heap.hpp"
 #include "engine_settings.hpp"
-#include "failing_memory.hpp"
 #include "finding.hpp"
 #include "fuzz_input.hpp"
 #include "fuzz_keys.hpp"
@@ -68,9 +68,9 @@ class EngineProgram {
 
   /// Which allocations of the next call fail.
   struct Plan {
-    std::uint64_t first = 0;
-    std::uint64_t count = 0;  ///< 0: none
-    bool each = false;        ///< the call is repeated, with `first` greater by 1, until it goes through
+    std::int64_t first = 0;
+    std::int64_t count = 0;  ///< 0: none
+    bool each = false;       ///< the call is repeated, with `first` greater by 1, until it goes through
   };
 
   EngineProgram(std::unique_ptr<EngineType> engine, Config config, oracle::Palette palette, Input& input)
@@ -307,7 +307,7 @@ class EngineProgram {
   /// Of the next call.
   void plan_failure() {
     const std::uint8_t mode = input_.byte();
-    plan_ = {.first = input_.byte(), .count = mode % 2 == 0 ? 1U : ~std::uint64_t{0}, .each = (mode & 2U) != 0};
+    plan_ = {.first = input_.byte(), .count = mode % 2 == 0 ? 1 : heap::Failing::kAllAfter, .each = (mode & 2U) != 0};
     if (plan_.each) plan_.first = 0;
     // oneTBB's own allocations must not fail.
     if (config_.executor->concurrency() > 1) plan_ = {};
@@ -396,7 +396,7 @@ class EngineProgram {
   Outcome attempt(const Plan& plan, const Body& body) {
     bool failed = false;
     try {
-      const FailingMemory memory(plan.first, plan.count);
+      const heap::Failing memory(plan.first, plan.count, heap::Failing::Of::kThisThread);
       try {
         body();
         return Outcome::kDone;

@@ -7,7 +7,7 @@
 #include <ostream>
 #include <string>
 
-#include "failing_memory.hpp"
+#include "../watched_heap.hpp"
 
 namespace sweepgrid::fuzz {
 
@@ -22,7 +22,7 @@ struct TextKey {
 
 struct TextKeyHash {
   std::size_t operator()(const TextKey& key) const {
-    FailingMemory::may_fail();
+    heap::may_fail();
     return std::hash<std::string>()(key.text);
   }
 };
