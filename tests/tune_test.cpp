@@ -16,6 +16,7 @@
 #include "study/accuracy/known_scene.hpp"
 #include "tune/contest.hpp"
 #include "tune/exhaustive.hpp"
+#include "tune/reasons.hpp"
 #include "tune/tune_json.hpp"
 
 namespace sweepgrid::tune::tune_test {
@@ -168,6 +169,48 @@ TEST(SceneFacts, AreCounts) {
   const SceneFacts fast = find_facts(sample_of(kFast));
   EXPECT_GT(fast.most_displacement, 1.5);
   EXPECT_TRUE(find_facts(sample_of("lattice:n=100,steps=4,offset=8")).floats);
+}
+
+/// Cubes of width 1 in a row, far apart, of which the first so many go by `shift` along y in every step.
+SceneSample row_of(std::uint32_t objects, std::uint32_t moving, double shift) {
+  SceneSample sample;
+  sample.width = 1;
+  Window& window = sample.windows.emplace_back();
+  window.warm_up = 8;
+  window.scene.objects = objects;
+  for (int k = 0; k <= 16; ++k) {
+    study::KnownStep& step = window.scene.steps.emplace_back();
+    for (std::uint32_t object = 0; object < (k == 0 ? objects : moving); ++object) {
+      const double x = 10.0 * object;
+      (k == 0 ? step.inserted : step.updated).push_back(object);
+      (k == 0 ? step.inserted_boxes : step.updated_boxes).push_back({{x, k * shift, 0}, {x + 1, k * shift + 1, 1}});
+    }
+  }
+  return sample;
+}
+
+TEST(SceneFacts, SpeedsAreThoseThatMarginsFollow) {
+  EXPECT_NEAR(mean_speed(row_of(10, 10, 0.25), 1), 0.25, 1e-9);
+  EXPECT_NEAR(mean_speed(row_of(10, 1, 0.25), 4), 0.025, 1e-9);
+  EXPECT_EQ(mean_speed(row_of(10, 0, 0.25), 1), 0);
+  SceneSample jumps = row_of(10, 1, 0.25);
+  for (std::size_t k = 10; k <= 16; ++k) {
+    SceneBox& box = jumps.windows[0].scene.steps[k].updated_boxes[0];
+    box.min[1] += 100;
+    box.max[1] += 100;
+  }
+  EXPECT_NEAR(mean_speed(jumps, 1), 0.025, 1e-9) << "an object that jumps once is no faster";
+}
+
+TEST(Reasons, MarginsByStepsAreRuledOutByWhatObjectsGoInTheMean) {
+  const EnvelopeOptions envelope{.margin_steps = 6, .stride = 4, .on_violation = OnViolation::kQuery};
+  const auto why_not = [&](const SceneSample& sample) {
+    return why_not_worthwhile(envelope, sample, find_facts(sample));
+  };
+  EXPECT_EQ(why_not(row_of(100, 1, 2)), "") << "a single object is fast";
+  EXPECT_EQ(why_not(row_of(100, 100, 0.1)), "");
+  EXPECT_EQ(why_not(row_of(100, 100, 0.5)), "margins would be 3 widths in the mean: objects go by 0.5 in a step");
+  EXPECT_EQ(why_not(row_of(100, 0, 0)), "nothing moves");
 }
 
 TEST(Candidate, GivesMarginsInTheUnitsOfTheEngine) {

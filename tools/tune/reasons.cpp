@@ -117,11 +117,12 @@ std::string why_not_worthwhile(const EnvelopeOptions& envelope, const SceneSampl
     }
   }
   if (envelope.margin_steps > 0) {
+    // Each object has a margin of its own, so a few that are fast do not matter to the others.
     constexpr double kWidest = 1;
-    const double margin = envelope.margin_steps * facts.most_displacement;
+    const double speed = mean_speed(sample, envelope.stride);
+    const double margin = envelope.margin_steps * speed;
     if (margin > kWidest) {
-      return fmt::format("margins would be {:.4g} widths: objects move by up to {:.4g} in a step", margin,
-                         facts.most_displacement);
+      return fmt::format("margins would be {:.4g} widths in the mean: objects go by {:.4g} in a step", margin, speed);
     }
   }
   if (envelope.stride > 1 && envelope.margin > 0 && facts.most_displacement > envelope.margin) {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include <sweepgrid/engine/object_speed.hpp>
+
 #include "accuracy/extent_sweep.hpp"
 
 namespace sweepgrid::tune {
@@ -17,7 +19,7 @@ class Boxes {
  public:
   explicit Boxes(const Window& window) : boxes_(window.scene.objects), there_(window.scene.objects) {}
 
-  /// `moved(before, after)` is called for every update.
+  /// `moved(object, before, after)` is called for every update.
   template <class Moved>
   void apply(const KnownStep& step, Moved&& moved) {
     for (const std::uint32_t object : step.erased) there_[object] = 0;
@@ -27,11 +29,12 @@ class Boxes {
     }
     for (std::size_t i = 0; i < step.updated.size(); ++i) {
       SceneBox& box = boxes_[step.updated[i]];
-      moved(box, step.updated_boxes[i]);
+      moved(step.updated[i], box, step.updated_boxes[i]);
       box = step.updated_boxes[i];
     }
   }
 
+  [[nodiscard]] bool there(std::size_t object) const { return there_[object] != 0; }
   /// Those that are there; along `axis`, if there is one, they are [0, 0].
   [[nodiscard]] std::vector<Extent> extents(std::size_t axis = 3) const {
     std::vector<Extent> result;
@@ -88,7 +91,7 @@ SceneFacts find_facts(const SceneSample& sample) {
     Boxes boxes(window);
     for (std::size_t k = 0; k < window.scene.steps.size(); ++k) {
       const KnownStep& step = window.scene.steps[k];
-      boxes.apply(step, [&](const SceneBox& before, const SceneBox& after) {
+      boxes.apply(step, [&](std::uint32_t /*object*/, const SceneBox& before, const SceneBox& after) {
         if (k >= window.first_measured()) displacements.push_back(displacement(before, after) / width);
       });
       for (const SceneBox& box : step.inserted_boxes) see_box(box, width, facts);
@@ -133,6 +136,32 @@ double updates_outside(const SceneSample& sample, double margin) {
     }
   }
   return outside / static_cast<double>(sample.measured());
+}
+
+double mean_speed(const SceneSample& sample, int stride) {
+  const double fade = ObjectSpeed::fade_of(stride);
+  double sum = 0;
+  double objects = 0;
+  for (const Window& window : sample.windows) {
+    Boxes boxes(window);
+    std::vector<ObjectSpeed> speeds(window.scene.objects);
+    for (std::size_t k = 0; k < window.scene.steps.size(); ++k) {
+      const auto now = static_cast<std::uint32_t>(k);
+      const KnownStep& step = window.scene.steps[k];
+      for (const std::uint32_t object : step.inserted) speeds[object].appear(now);
+      boxes.apply(step, [&](std::uint32_t object, const SceneBox& before, const SceneBox& after) {
+        speeds[object].note(displacement(before, after), now, fade);
+      });
+      if (k < window.first_measured()) continue;
+      for (std::size_t object = 0; object < speeds.size(); ++object) {
+        if (!boxes.there(object)) continue;
+        sum += speeds[object].at(now, fade);
+        ++objects;
+      }
+    }
+  }
+  const double width = sample.width > 0 ? sample.width : 1;
+  return objects > 0 ? sum / objects / width : 0;
 }
 
 }  // namespace sweepgrid::tune

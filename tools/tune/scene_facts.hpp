@@ -27,4 +27,8 @@ struct SceneFacts {
 /// left. Comes down from SceneFacts::updates as margins grow.
 [[nodiscard]] double updates_outside(const SceneSample& sample, double margin);
 
+/// Speed that EnvelopeOptions::margin_steps multiplies, in widths: the mean over all objects and measured steps, those
+/// at rest included.
+[[nodiscard]] double mean_speed(const SceneSample& sample, int stride);
+
 }  // namespace sweepgrid::tune
