@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 #include "setup/json_text.hpp"
 
@@ -10,17 +11,21 @@ namespace {
 
 using Json = nlohmann::json;
 
+/// Reads members into places: name, place, name, place, and so on.
+template <class Value, class... More>
+void get_members(const Json& json, const char* name, Value& value, More&&... more) {
+  get_member(json, name, value);
+  if constexpr (sizeof...(more) > 0) get_members(json, std::forward<More>(more)...);
+}
+
 double sum(const std::vector<double>& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
 
 MeasuredThreads measured_of(const Json& json, std::uint64_t checksum) {
   MeasuredThreads result;
   get_member(json, "threads", result.threads);
   result.seconds = sum(member_of<std::vector<double>>(json, "step_s"));
-  get_member(json, "round_s", result.round_seconds);
-  get_member(json, "part_s", result.part_seconds);
-  get_member(json, "busy_s", result.busy);
-  get_member(json, "predicted", result.predicted);
-  get_member(json, "replayed", result.replayed);
+  get_members(json, "round_s", result.round_seconds, "part_s", result.part_seconds, "busy_s", result.busy, "predicted",
+              result.predicted, "replayed", result.replayed);
   for (const std::uint64_t found : member_of<std::vector<std::uint64_t>>(json, "checksums")) {
     result.same_events = result.same_events && found == checksum;
   }
@@ -29,8 +34,7 @@ MeasuredThreads measured_of(const Json& json, std::uint64_t checksum) {
 
 TimelineFindings timeline_of(const Json& json) {
   TimelineFindings result;
-  get_member(json, "workers", result.workers);
-  get_member(json, "stages", result.stages);
+  get_members(json, "workers", result.workers, "stages", result.stages);
   for (const Json& task : member_of<nlohmann::json>(json, "tasks")) {
     result.tasks.push_back({task.at(0), task.at(1), task.at(2), task.at(3), task.at(4)});
   }
@@ -64,18 +68,12 @@ void add_weak(const ScalingPlan& plan, const PointStore& store, SceneFindings& s
 }
 
 void take_checked(const Json& checked, SceneFindings& scene) {
-  get_member(checked, "ok", scene.ok);
-  get_member(checked, "error", scene.error);
-  get_member(checked, "checksum", scene.checksum);
-  get_member(checked, "steps_checked", scene.steps_checked);
-  get_member(checked, "pairs", scene.pairs_checked);
+  get_members(checked, "ok", scene.ok, "error", scene.error, "checksum", scene.checksum, "steps_checked",
+              scene.steps_checked, "pairs", scene.pairs_checked);
 }
 
 void take_measured(const Json& measured, SceneFindings& scene) {
-  get_member(measured, "objects", scene.objects);
-  get_member(measured, "steps", scene.steps);
-  get_member(measured, "events", scene.events);
-  get_member(measured, "stages", scene.stages);
+  get_members(measured, "objects", scene.objects, "steps", scene.steps, "events", scene.events, "stages", scene.stages);
   for (const Json& run : member_of<nlohmann::json>(measured, "runs"))
     scene.measured.push_back(measured_of(run, scene.checksum));
 }
