@@ -223,7 +223,7 @@ class Study : public testing::Test {
 // The whole figure takes half a minute, its first point under a second: a signal after that is never too late.
 TEST_F(Study, IsStoppedBySignalsAndKeepsItsPoints) {
   const std::string arguments = "--figure 8 " + out();
-  EXPECT_EQ(run(arguments, after_first_point("TERM")), 130) << said();
+  EXPECT_EQ(run(arguments, after_first_point("TERM")), 128 + SIGTERM) << said();
   EXPECT_NE(said().find("the same command goes on"), std::string::npos) << said();
   const std::vector<std::string> lines = point_lines();
   EXPECT_EQ(run(arguments, after_first_point("KILL")), 128 + SIGKILL) << said();

@@ -263,6 +263,29 @@ TEST_F(PointStores, AreRegularFilesWhereLinksLead) {
   EXPECT_EQ(error_of([&] { (void)open(fingerprint()); }), file() + ": Is a directory");
 }
 
+/// Of the program, when the call is interrupted.
+int exit_status(const std::function<void()>& call) {
+  try {
+    call();
+  } catch (const Interrupted& interrupted) {
+    return interrupted.exit_status();
+  }
+  return 0;
+}
+
+TEST_F(PointStores, TheFirstSignalDecidesTheExitStatus) {
+  for (const auto& [signal, status] : {std::pair(SIGINT, 130), std::pair(SIGTERM, 143)}) {
+    PointStore store = open(fingerprint());
+    const std::string name = std::to_string(signal);
+    const StudyPoint first{"a" + name, 1, [sent = signal] {
+                             std::raise(sent);
+                             return json(1);
+                           }};
+    const StudyPoint second{"b" + name, 1, [] { return json(2); }};
+    EXPECT_EQ(exit_status([&] { measure_points("test", {first, second}, store); }), status);
+  }
+}
+
 TEST_F(PointStores, ASecondSignalActsAsItDidBeforeTheStudy) {
   static volatile std::sig_atomic_t seen = 0;
   const auto old = std::signal(SIGTERM, [](int) { seen = seen + 1; });
@@ -289,7 +312,7 @@ TEST_F(PointStores, InterruptedStudyKeepsItsPointsAndGoesOn) {
   {
     PointStore store = open(fingerprint());
     const std::vector<StudyPoint> points = {point("a", false), point("b", true), point("c", false)};
-    EXPECT_THROW(measure_points("test", points, store), Interrupted);
+    EXPECT_EQ(exit_status([&] { measure_points("test", points, store); }), 130);
   }
   EXPECT_EQ(measured, (std::vector<std::string>{"a", "b"}));
   PointStore store = open(fingerprint());

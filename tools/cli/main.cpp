@@ -1,5 +1,5 @@
 // The `sweepgrid` program. Exit status: 0 all is well, 1 a verification failed, an invariant is broken or no
-// configuration meets a demand, 2 bad usage, file or scene, 130 a study was interrupted.
+// configuration meets a demand, 2 bad usage, file or scene, 130 or 143 a study was interrupted.
 
 #include <cstdint>
 #include <cstdio>
@@ -32,7 +32,7 @@
 namespace sweepgrid {
 namespace {
 
-enum ExitStatus { kWell = 0, kNotVerified = 1, kBadInput = 2, kInterrupted = 130 };
+enum ExitStatus { kWell = 0, kNotVerified = 1, kBadInput = 2 };
 
 constexpr const char* kScenesHelp =
     "Recordings (.aabbs, LAMMPS text dumps; bare or .gz, .xz, .zst) or generated scenes such as uniform:n=1000";
@@ -124,7 +124,7 @@ int run_main(int argc, char** argv) {
   app.footer(
       generator_help() +
       "Exit status: 0 all is well, 1 a verification failed or a demand cannot be met, 2 bad usage, file or scene, "
-      "130 a study was interrupted.");
+      "130 or 143 a study was interrupted (SIGINT, SIGTERM).");
   RunOptions run_options;
   const CLI::App* run = add_run(app, run_options);
   InfoOptions info_options;
@@ -169,7 +169,7 @@ int main(int argc, char** argv) {
     return status;
   } catch (const sweepgrid::study::Interrupted& interrupted) {
     sweepgrid::complain(interrupted.what());
-    return sweepgrid::kInterrupted;
+    return interrupted.exit_status();
   } catch (const std::bad_alloc&) {
     sweepgrid::complain("there is not enough memory for this");
   } catch (const std::exception& error) {

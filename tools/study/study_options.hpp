@@ -23,7 +23,13 @@ struct StudyOptions {
 /// SIGINT or SIGTERM ended a study between two points; what() tells where the points are.
 class Interrupted : public std::runtime_error {
  public:
-  using std::runtime_error::runtime_error;
+  Interrupted(int signal, const std::string& what) : std::runtime_error(what), signal_(signal) {}
+
+  /// As a shell tells of a program that the signal ends.
+  [[nodiscard]] int exit_status() const { return 128 + signal_; }
+
+ private:
+  int signal_;
 };
 
 /// Makes the folder, with those above it. Throws std::runtime_error that names it when that fails or when nothing can

@@ -13,7 +13,7 @@ namespace {
 
 // What the signal handler uses; sigaction() is among what it may call.
 // NOLINTBEGIN(cppcoreguidelines-avoid-non-const-global-variables)
-volatile std::sig_atomic_t interrupted = 0;
+volatile std::sig_atomic_t interrupted = 0;  // by which signal
 struct sigaction old_int {};
 struct sigaction old_term {};
 // NOLINTEND(cppcoreguidelines-avoid-non-const-global-variables)
@@ -31,8 +31,8 @@ class InterruptGuard {
     sigaction(SIGINT, nullptr, &old_int);
     sigaction(SIGTERM, nullptr, &old_term);
     struct sigaction action {};
-    action.sa_handler = [](int) {
-      interrupted = 1;
+    action.sa_handler = [](int signal) {
+      interrupted = signal;
       restore_signals();
     };
     sigaction(SIGINT, &action, nullptr);
@@ -57,10 +57,10 @@ void measure_points(const std::string& title, const std::vector<StudyPoint>& poi
       continue;
     }
     if (interrupted != 0) {
-      throw Interrupted(
-          fmt::format("interrupted; finished points are kept in {}, and the same command goes on with "
-                      "those that are missing",
-                      store.path().string()));
+      throw Interrupted(interrupted,
+                        fmt::format("interrupted; finished points are kept in {}, and the same command goes on with "
+                                    "those that are missing",
+                                    store.path().string()));
     }
     progress.begin(point.key);
     const WallStopwatch watch;
