@@ -8,7 +8,8 @@ cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 # Where ccache is installed, a second checkout profits from what was compiled in the first.
 export CCACHE_BASEDIR=$PWD CCACHE_NOHASHDIR=1
 
-readonly script_name=tools/${0##*/}
+script_name=$(cd "$started_in" && realpath --relative-to="$OLDPWD" "$0")
+readonly script_name
 advice="read the lines above."
 trap 'end_of_script $?' EXIT
 
