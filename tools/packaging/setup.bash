@@ -45,8 +45,12 @@ install_packages() {
     echo "no apt-get here: taking it that what these packages hold is installed: $*"
     return
   fi
+  local architecture
+  architecture=$(dpkg --print-architecture)
   for package in "$@"; do
-    if [[ $(dpkg-query --show --showformat='${db:Status-Status}' "$package" 2>/dev/null) != installed ]]; then
+    # It may be there for other architectures, too.
+    if ! dpkg-query --show --showformat='${Architecture} ${db:Status-Status}\n' "$package" 2>/dev/null |
+      grep -xE "($architecture|all) installed" >/dev/null; then
       missing+=("$package")
     fi
   done
