@@ -21,6 +21,7 @@
 #include <sweepgrid/sap/box.hpp>
 #include <sweepgrid/sap/high_water.hpp>
 #include <sweepgrid/sap/ids.hpp>
+#include <sweepgrid/sap/prefetch.hpp>
 #include <sweepgrid/scheduler/executor.hpp>
 
 namespace sweepgrid {
@@ -66,7 +67,7 @@ class Envelopes {
            records_[handle.index].generation == handle.generation;
   }
   [[gnu::always_inline]] void prefetch(Handle handle) const {
-    if (handle.index < records_.size()) __builtin_prefetch(&records_[handle.index], 1);
+    if (handle.index < records_.size()) sweepgrid::prefetch(&records_[handle.index]);
   }
   [[nodiscard]] const BoxType& box(ObjectId object) const { return records_[object].box; }
   [[nodiscard]] const BoxType& envelope(ObjectId object) const { return records_[object].envelope; }

@@ -17,6 +17,7 @@
 #include <sweepgrid/grid/levels.hpp>
 #include <sweepgrid/sap/box.hpp>
 #include <sweepgrid/sap/ids.hpp>
+#include <sweepgrid/sap/prefetch.hpp>
 
 namespace sweepgrid {
 
@@ -224,10 +225,10 @@ class ObjectTable {
     constexpr std::size_t kAhead = 12;
     if (i + kAhead >= items.size()) return;
     const std::size_t item = items[i + kAhead];
-    if (objects[item].index < end) __builtin_prefetch(&records_[objects[item].index], 1);
+    if (objects[item].index < end) sweepgrid::prefetch(&records_[objects[item].index]);
     if (!items.listed()) return;
-    if (boxes != nullptr) __builtin_prefetch(&boxes[item]);
-    if (i + 2 * kAhead < items.size()) __builtin_prefetch(&objects[items[i + 2 * kAhead]]);
+    if (boxes != nullptr) sweepgrid::prefetch(&boxes[item]);
+    if (i + 2 * kAhead < items.size()) sweepgrid::prefetch(&objects[items[i + 2 * kAhead]]);
   }
 
   [[gnu::always_inline]] bool replace(ObjectId object, const BoxType& box, double& widest);

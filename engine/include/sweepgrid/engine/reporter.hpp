@@ -7,6 +7,7 @@
 #include <sweepgrid/engine/object_table.hpp>
 #include <sweepgrid/grid/levels.hpp>
 #include <sweepgrid/sap/ids.hpp>
+#include <sweepgrid/sap/prefetch.hpp>
 
 namespace sweepgrid {
 
@@ -26,7 +27,7 @@ class StepBoxes {
   }
   [[nodiscard]] const BoxType& after(ObjectId object) const { return objects_.record(object).box; }
   // Forced inline: g++ 12 takes a function that only prefetches for one without effect, and drops its calls.
-  [[gnu::always_inline]] void prefetch(ObjectId object) const { __builtin_prefetch(&objects_.record(object)); }
+  [[gnu::always_inline]] void prefetch(ObjectId object) const { sweepgrid::prefetch(&objects_.record(object)); }
 
  private:
   const Objects& objects_;

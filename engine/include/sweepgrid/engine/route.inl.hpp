@@ -7,6 +7,7 @@
 
 #include <sweepgrid/engine/engine_core.hpp>
 #include <sweepgrid/grid/levels.inl.hpp>
+#include <sweepgrid/sap/prefetch.hpp>
 
 namespace sweepgrid {
 
@@ -108,9 +109,9 @@ void EngineCore<Scalar, Dim>::route_granule(std::size_t block, std::uint32_t gra
   Record* const records = &objects_.record(first);
   RouteBlock& out = blocks_[block];
   constexpr std::uint32_t kAhead = 12;
-  for (std::uint32_t i = 0; i < std::min(kAhead, used); ++i) __builtin_prefetch(&records[chosen[i]], 1);
+  for (std::uint32_t i = 0; i < std::min(kAhead, used); ++i) sweepgrid::prefetch(&records[chosen[i]]);
   for (std::uint32_t i = 0; i < used; ++i) {
-    if (i + kAhead < used) __builtin_prefetch(&records[chosen[i + kAhead]], 1);
+    if (i + kAhead < used) sweepgrid::prefetch(&records[chosen[i + kAhead]]);
     route_object(block, first + chosen[i], records[chosen[i]], out);
   }
 }

@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include <sweepgrid/grid/grid.hpp>
+#include <sweepgrid/sap/prefetch.hpp>
 
 namespace sweepgrid {
 
@@ -43,7 +44,7 @@ void Grid<Scalar, Dim>::look_up(std::size_t block) {
     const std::uint64_t code = waiting.calls[i].cell;
     const CellId* const cells = shards_[shard_of(code)].directory.find_block(Code::block(code));
     places[i] = cells == nullptr ? &kNowhere : cells + Code::inner(code);
-    __builtin_prefetch(places[i]);
+    sweepgrid::prefetch(places[i]);
   }
   for (std::size_t i = 0; i < waiting.count; ++i) {
     const OpQueues::Fresh& call = waiting.calls[i];
