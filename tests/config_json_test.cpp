@@ -22,6 +22,7 @@ Config changed_everywhere() {
   config.cell_size = 0.1;
   config.cell_population = 7;
   config.reduction = Reduction::kWitnessCounts;
+  config.step_method = StepMethod::kSweep;
   config.envelope = EnvelopeOptions{1.0 / 3, 2.5, false, 4, OnViolation::kQuery, true};
   config.step_bytes = 10'000'000'000;
   config.threads = 3;
@@ -40,14 +41,14 @@ std::string refusal(const std::string& text) {
 TEST(ConfigJson, TellsEveryMember) {
   EXPECT_EQ(Json(changed_everywhere()), Json::parse(R"({
     "cell": {"kind": "segmented", "segment_capacity": 8, "integration": "presorted"},
-    "cell_size": 0.1, "cell_population": 7, "reduction": "counts",
+    "cell_size": 0.1, "cell_population": 7, "reduction": "counts", "step_method": "sweep",
     "envelope": {"margin": 0.3333333333333333, "margin_steps": 2.5, "swept": false, "stride": 4,
                  "on_violation": "query", "exact": true},
     "step_bytes": 10000000000, "threads": 3})"));
   EXPECT_EQ(Json(Config{}), Json::parse(R"({
     "cell": {"kind": "auto", "segment_capacity": 32, "integration": "auto"},
-    "cell_size": null, "cell_population": null, "reduction": "reporter", "envelope": null, "step_bytes": null,
-    "threads": 0})"));
+    "cell_size": null, "cell_population": null, "reduction": "reporter", "step_method": "auto", "envelope": null,
+    "step_bytes": null, "threads": 0})"));
 }
 
 TEST(ConfigJson, ComesBackAsItWas) {

@@ -96,7 +96,7 @@ TEST(Engine, AKeyThatIsErasedAndInsertedEndsItsOldPairsAndBeginsItsNew) {
 }
 
 TEST(Engine, AnObjectThatLivesForNoStepLeavesNoTrace) {
-  Engine2 engine(serial());
+  Engine2 engine(through_cells());
   engine.insert(1, square(0, 0));
   engine.step();
   engine.insert(2, square(0, 0));

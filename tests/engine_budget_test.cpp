@@ -129,6 +129,7 @@ Counts play_all(const SceneRegime& regime) {
         auto config = kGrids[2].template config<Dim>(kind, make_executor(1), reduction);
         if (reduction == Reduction::kSingleReporter) config.cell_population.reset();
         config.envelope = envelope;
+        config.step_method = kStepMethods[turn / 2 % kStepMethods.size()];
         Heard heard;
         const SceneScript<Scalar, Dim> script(regime, turn);
         EXPECT_EQ(play_limited(config, script, regime.steps, turn, heard), "")
@@ -212,7 +213,7 @@ TEST(Budget, GoesThroughOnceTheLimitIsRaised) {
 }
 
 TEST(Budget, OfCallsStopsWideBoxesThatVisitManyCells) {
-  Config config = serial();
+  Config config = through_cells();
   config.step_bytes = 1 << 20;
   Engine2 engine(config);
   for (std::uint64_t key = 0; key < 4000; ++key) {

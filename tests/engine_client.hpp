@@ -28,6 +28,13 @@ inline Config serial() {
   return config;
 }
 
+/// The same, and no step sweeps.
+inline Config through_cells() {
+  Config config = serial();
+  config.step_method = StepMethod::kCells;
+  return config;
+}
+
 inline Box2 square(float x, float y, float width = 1) { return Box2({x, y}, {x + width, y + width}); }
 
 /// What the call says when it throws std::invalid_argument; fails when it does not.

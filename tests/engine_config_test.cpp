@@ -35,7 +35,7 @@ TEST(EngineConfig, RefusesWhatIsOutOfRangeAndNamesIt) {
 
 TEST(EngineConfig, AGivenCellSizeIsKeptButForBoundedGridsOfTooManyCells) {
   for (const Reduction reduction : {Reduction::kSingleReporter, Reduction::kWitnessCounts}) {
-    Config config = serial();
+    Config config = through_cells();
     config.cell_size = 1e-9;
     config.reduction = reduction;
     Engine2 engine(config);

@@ -85,10 +85,14 @@ std::int64_t allocations_of_steps(const Config& config, const Lattice& lattice, 
 TEST(Heap, AWarmStepWhoseObjectsStayInTheirCellsAllocatesNothing) {
   const Lattice apart(8, 1.5F);
   const Lattice close(8, 0.95F);  // each overlaps all around it, before and after
-  for (const Setting& setting : settings()) {
-    for (const Lattice& lattice : {apart, close}) {
-      for (const std::uint64_t stride : {1, 10}) {
-        EXPECT_EQ(allocations_of_steps(setting.config, lattice, stride, 10, 150), 0) << setting.name << ", " << stride;
+  for (Setting& setting : settings()) {
+    for (const StepMethod method : {StepMethod::kCells, StepMethod::kSweep}) {
+      setting.config.step_method = method;
+      for (const Lattice& lattice : {apart, close}) {
+        for (const std::uint64_t stride : {1, 10}) {
+          EXPECT_EQ(allocations_of_steps(setting.config, lattice, stride, 10, 150), 0)
+              << setting.name << ", " << stride << ", method " << static_cast<int>(method);
+        }
       }
     }
   }
@@ -98,6 +102,7 @@ TEST(Heap, NorDoesOneOfCrowdedCells) {
   const Lattice crowd(9, 1.5F);  // more objects in a cell than fit on the stack
   for (Setting& setting : settings()) {
     setting.config.cell_size = 1000;
+    setting.config.step_method = StepMethod::kCells;
     if (setting.config.cell.kind == CellKind::kAuto) continue;  // now and then tries another kind
     for (const std::uint64_t stride : {1, 10}) {
       EXPECT_EQ(allocations_of_steps(setting.config, crowd, stride, 5, 15), 0) << setting.name << ", " << stride;

@@ -76,6 +76,7 @@ TEST(WithoutMemory, AStepIsDoneWhollyOrNotAtAll) {
           auto config = kGrids[2].config<3>(kind, make_executor(1), reduction);
           if (reduction == Reduction::kSingleReporter) config.cell_population.reset();
           config.envelope = envelope;
+          config.step_method = kStepMethods[turn / 2 % kStepMethods.size()];
           const SceneScript<float, 3> script(regime, turn);
           EXPECT_EQ(play_failing(config, script, regime.steps, failed), "") << regime.name << ", turn " << turn;
         }

@@ -96,11 +96,12 @@ EngineOps<Scalar, Dim> shuffled(const EngineOps<Scalar, Dim>& ops, std::uint64_t
   return result;
 }
 
-/// How the grids are set; scenes are in 0 to 100.
+/// How the grids are set, and what steps go through them; scenes are in 0 to 100.
 struct GridChoice {
   const char* name;
   int population = 0;    ///< 0: the engine's choice
   double cell_size = 0;  ///< 0: derived
+  StepMethod method = StepMethod::kAuto;
 
   template <int Dim>
   [[nodiscard]] Config config(CellKind kind, std::shared_ptr<Executor> executor,
@@ -115,6 +116,7 @@ struct GridChoice {
       config.cell_size = std::max(cell_size, Dim == 2 ? 1.5 : Dim * 2.5);
     }
     config.reduction = reduction;
+    config.step_method = method;
     config.executor = std::move(executor);
     return config;
   }
@@ -126,14 +128,16 @@ struct GridChoice {
 };
 
 inline constexpr std::array kGrids{
-    GridChoice{.name = "derived"},
-    GridChoice{.name = "one object per cell", .population = 1},
-    GridChoice{.name = "1000 objects per cell", .population = 1000},
-    GridChoice{.name = "cells of 10", .cell_size = 10},
-    GridChoice{.name = "cells smaller than boxes", .cell_size = 1.5},
-    GridChoice{.name = "cells smaller than any box", .cell_size = 0.01},
+    GridChoice{.name = "derived", .method = StepMethod::kCells},
+    GridChoice{.name = "one object per cell", .population = 1, .method = StepMethod::kCells},
+    GridChoice{.name = "1000 objects per cell", .population = 1000, .method = StepMethod::kCells},
+    GridChoice{.name = "swept", .method = StepMethod::kSweep},
+    GridChoice{.name = "cells of 10", .cell_size = 10, .method = StepMethod::kCells},
+    GridChoice{.name = "cells smaller than boxes", .cell_size = 1.5, .method = StepMethod::kCells},
+    GridChoice{.name = "cells smaller than any box", .cell_size = 0.01, .method = StepMethod::kCells},
+    GridChoice{.name = "as the engine chooses"},
     GridChoice{.name = "cells of 13", .cell_size = 13},
-    GridChoice{.name = "huge cells", .cell_size = 1e9},
+    GridChoice{.name = "huge cells", .cell_size = 1e9, .method = StepMethod::kCells},
 };
 
 inline constexpr std::array kKinds{CellKind::kRows,    CellKind::kBatch, CellKind::kSegmented,
@@ -141,6 +145,7 @@ inline constexpr std::array kKinds{CellKind::kRows,    CellKind::kBatch, CellKin
 inline constexpr std::array<const char*, 6> kKindNames{"rows", "batch", "segmented", "classic", "plane", "auto"};
 inline constexpr std::array kReductions{Reduction::kSingleReporter, Reduction::kWitnessCounts};
 inline constexpr std::array<const char*, 2> kReductionNames{"single reporters", "witness counts"};
+inline constexpr std::array kStepMethods{StepMethod::kAuto, StepMethod::kSweep, StepMethod::kCells};
 inline constexpr std::array kThreadCounts{1, 2, 3, 8};
 
 /// Plays a script to an engine and the model; says what differed and when, nothing when all was well.

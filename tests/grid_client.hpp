@@ -52,11 +52,6 @@ class ClientBoxes {
 /// Sums of deltas by the code of the cell and the pair; sums of zero are left out.
 using CellSums = std::map<std::pair<std::uint64_t, PairKey>, int>;
 
-template <class Scalar, int Dim>
-void begin_step(Grid<Scalar, Dim>& grid, std::size_t blocks, bool dense) {
-  grid.begin_step(blocks, dense);
-}
-
 /// Gathers and drains all that was routed, and drops what is empty.
 template <class Scalar, int Dim>
 CellSums finish_step(Grid<Scalar, Dim>& grid, const ClientBoxes<Scalar, Dim>& boxes, std::size_t blocks = 1) {

@@ -8,6 +8,7 @@ StepCounters& StepCounters::operator+=(const StepCounters& other) {
   updates += other.updates;
   erases += other.erases;
   migrations += other.migrations;
+  sweeps += other.sweeps;
   cell_ops += other.cell_ops;
   cells_drained += other.cells_drained;
   regrids += other.regrids;

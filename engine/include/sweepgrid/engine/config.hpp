@@ -20,6 +20,17 @@ enum class Reduction {
   kWitnessCounts,
 };
 
+/// How a step finds out which pairs have changed.
+enum class StepMethod {
+  /// The way that costs less by what has changed since the latest step.
+  kAuto,
+  /// Through cells, which are kept up to date: costs what has changed.
+  kCells,
+  /// By sweeping all objects from scratch, and no cells are kept: costs what there is. Where that is not possible, as
+  /// kCells: with witness counts, other cells than rows, and more than 4 axes.
+  kSweep,
+};
+
 /// Settings of an engine. Of them, only `envelope` has a say in which pairs there are, and `step_bytes` in whether a
 /// step is done or refused; the others in time and memory. The defaults suit most scenes.
 struct Config {
@@ -34,6 +45,8 @@ struct Config {
   std::optional<int> cell_population;
   /// How deltas become events.
   Reduction reduction = Reduction::kSingleReporter;
+  /// How steps work.
+  StepMethod step_method = StepMethod::kAuto;
   /// Margins, swept boxes, strides: accuracy for time. Absent: none, and pairs are exact.
   std::optional<EnvelopeOptions> envelope;
   /// Most bytes that the lists of one step may take: 16 for every call to a cell, 16 for every overlap delta (32 with

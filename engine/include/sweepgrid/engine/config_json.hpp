@@ -40,6 +40,12 @@ namespace sweepgrid {
   return all;
 }
 
+[[nodiscard]] inline const json_members::Names<StepMethod>& json_names(StepMethod) {
+  static const json_members::Names<StepMethod> all = {
+      {"auto", StepMethod::kAuto}, {"cells", StepMethod::kCells}, {"sweep", StepMethod::kSweep}};
+  return all;
+}
+
 [[nodiscard]] inline const json_members::Names<OnViolation>& json_names(OnViolation) {
   static const json_members::Names<OnViolation> all = {{"report", OnViolation::kReport},
                                                        {"query", OnViolation::kQuery}};
@@ -95,6 +101,7 @@ void to_json(BasicJson& json, const Config& config) {
           {"cell_size", json_members::optional_json<BasicJson>(config.cell_size)},
           {"cell_population", json_members::optional_json<BasicJson>(config.cell_population)},
           {"reduction", json_members::name_of(config.reduction)},
+          {"step_method", json_members::name_of(config.step_method)},
           {"envelope", json_members::optional_json<BasicJson>(config.envelope)},
           {"step_bytes", json_members::optional_json<BasicJson>(config.step_bytes)},
           {"threads", config.threads}};
@@ -109,6 +116,7 @@ void from_json(const BasicJson& json, Config& config) {
   members.read("cell_size", read.cell_size, false);
   members.read("cell_population", read.cell_population, 1);
   members.read("reduction", read.reduction);
+  members.read("step_method", read.step_method);
   members.read("envelope", read.envelope);
   members.read("step_bytes", read.step_bytes, std::uint64_t{0});
   members.read("threads", read.threads, 0, 65536);

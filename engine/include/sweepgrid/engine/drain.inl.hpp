@@ -25,6 +25,7 @@ inline constexpr std::uint64_t kSmallestTask = 8192;
 template <class Scalar, int Dim>
 void EngineCore<Scalar, Dim>::plan_gather(std::vector<std::uint64_t>& costs) {
   gathers_.restart();
+  if (sweeping_) return;
   for (const GridIndex grid : levels_.live()) {
     for (std::size_t shard = 0; shard < levels_.grid(grid).shards(); ++shard) {
       GatherTask& task = gathers_.add();
@@ -37,7 +38,7 @@ void EngineCore<Scalar, Dim>::plan_gather(std::vector<std::uint64_t>& costs) {
   for (const RouteBlock& block : blocks_) calls += block.calls;
   counters_.cell_ops = calls;
   const auto workers = static_cast<std::uint64_t>(executor_->concurrency());
-  const std::uint64_t work = 16 * std::max<std::uint64_t>(calls, dense_ ? 2 * objects_.size() : 0);
+  const std::uint64_t work = 16 * calls;
   task_cost_ = workers == 1 ? ~std::uint64_t{0}
                             : std::max(engine_core::kSmallestTask, work / (engine_core::kTasksPerWorker * workers));
 }
@@ -52,7 +53,7 @@ void EngineCore<Scalar, Dim>::gather(std::size_t index) {
   const auto cells = grid.active(task.shard);
   for (std::size_t i = 0; i < cells.size(); ++i) {
     const auto& cell = cells[i];
-    const std::uint64_t ops = cell.call_count + (dense_ ? cell.population : 0);
+    const std::uint64_t ops = cell.call_count;
     const std::uint64_t own = ops * (8 + cell.population / 8) + 8;
     if (cost > 0 && cost + own > task_cost_) {
       task.cuts.items.push_back(i);
@@ -74,6 +75,7 @@ void EngineCore<Scalar, Dim>::gather(std::size_t index) {
 template <class Scalar, int Dim>
 void EngineCore<Scalar, Dim>::plan_drain(std::vector<std::uint64_t>& costs) {
   tasks_.restart();
+  if (sweeping_) return;
   double met = 0;
   std::uint64_t ops = 0;
   for (const GatherTask& gathered : gathers_) {
@@ -95,7 +97,7 @@ void EngineCore<Scalar, Dim>::plan_drain(std::vector<std::uint64_t>& costs) {
       costs.push_back(gathered.costs.items[i]);
     }
   }
-  if (!relocation_.wanted) regrid_.observe(met, ops);  // half a scene in new cells says little
+  regrid_.observe(met, ops);
 }
 
 template <class Scalar, int Dim>

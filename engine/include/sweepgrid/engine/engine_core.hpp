@@ -9,9 +9,11 @@
 #include <vector>
 
 #include <sweepgrid/engine/config.hpp>
+#include <sweepgrid/engine/method_choice.hpp>
 #include <sweepgrid/engine/object_table.hpp>
 #include <sweepgrid/engine/regrid.hpp>
 #include <sweepgrid/engine/reporter.hpp>
+#include <sweepgrid/engine/scene_sweep.hpp>
 #include <sweepgrid/engine/stats.hpp>
 #include <sweepgrid/engine/step_items.hpp>
 #include <sweepgrid/engine/step_list.hpp>
@@ -55,18 +57,18 @@ class EngineCore {
   [[nodiscard]] bool run_step();
   void commit_step() noexcept;
   void cancel_step() noexcept;
-  /// Makes the cells anew if there was no memory for them when the latest step was taken back, as the next step would.
-  void mend() {
-    if (broken_) restore_cells();
-  }
   void set_step_bytes(std::optional<std::uint64_t> bytes) { config_.step_bytes = bytes; }
 
   /// The events of the latest step come in lists, in no order; with single reporters a list may name a pair twice.
-  [[nodiscard]] std::size_t lists() const { return counting() ? shards_.size() : tasks_.size(); }
+  [[nodiscard]] std::size_t lists() const {
+    return sweeping_ ? sweep_.lists() : counting() ? shards_.size() : tasks_.size();
+  }
   [[nodiscard]] std::span<const PairKey> begins(std::size_t list) const {
+    if (sweeping_) return sweep_.begins(list);
     return counting() ? shards_[list].begins.items : tasks_[list].begins.items;
   }
   [[nodiscard]] std::span<const PairKey> ends(std::size_t list) const {
+    if (sweeping_) return sweep_.ends(list);
     return counting() ? shards_[list].ends.items : tasks_[list].ends.items;
   }
   /// To be told the numbers of events once they are free of doubles.
@@ -74,7 +76,7 @@ class EngineCore {
   /// Pairs by the events of all steps so far.
   [[nodiscard]] std::size_t pair_count() const { return pairs_; }
 
-  /// In no order. Without cells (there was no memory for them) by sweeping all boxes, O(n log n) and more.
+  /// In no order. Without cells by sweeping all boxes, O(n log n) and more.
   [[nodiscard]] std::vector<PairKey> pairs() const;
 
   void validate() const;
@@ -95,15 +97,19 @@ class EngineCore {
 
   [[nodiscard]] bool counting() const { return config_.reduction == Reduction::kWitnessCounts; }
 
+  void plan_bin(std::vector<std::uint64_t>& costs);
+  void bin(std::size_t block);
+  void plan_sweep(std::vector<std::uint64_t>& costs);
+  void sweep(std::size_t part);
+  [[nodiscard]] bool choose_sweep();
+  [[nodiscard]] std::size_t estimated_changes() const;
   void plan_route(std::vector<std::uint64_t>& costs);
-  [[nodiscard]] bool most_changed(const std::vector<std::uint32_t>& granules) const;
   void route(std::size_t block);
   void route_granule(std::size_t block, std::uint32_t granule);
   void route_object(std::size_t block, ObjectId object, Record& record, RouteBlock& out);
   void note_change(Record& record, std::uint8_t state) const;
   void route_moved(std::size_t block, ObjectId object, Record& record, RouteBlock& out);
   void show(std::size_t block, ObjectId object, GridIndex home, const BoxType* before, const BoxType* after);
-  void relocate(std::size_t block, ObjectId object, const Record& record, RouteBlock& out);
   void plan_gather(std::vector<std::uint64_t>& costs);
   void gather(std::size_t task);
   void plan_drain(std::vector<std::uint64_t>& costs);
@@ -114,11 +120,15 @@ class EngineCore {
   void reduce(std::size_t shard);
   static void keep_changes(Shard& shard, const WitnessTable& before);
   void finish_step();
+  void finish_sweep();
+  void commit_sweep() noexcept;
+  void pass_sweep(std::size_t steps);
   void pass_idle_step();
   void pass_idle_steps();
   void take_back_step() noexcept;
-  void restore_cells();
-  void restore_cells_of(GridType& grid);
+  void make_cells();
+  void fill_cells();
+  void fill_counted();
 
   void follow_scene();
   void follow_with_counts();
@@ -129,12 +139,8 @@ class EngineCore {
   [[nodiscard]] typename GridFit<Scalar, Dim>::Result fit(const std::vector<BoxType>& sample) const;
   [[nodiscard]] std::vector<BoxType> sample(std::size_t count) const;
   [[nodiscard]] std::size_t grid_shards() const;
-  void plan_relocation();
 
   [[nodiscard]] std::size_t shard_of(PairKey pair) const { return WitnessTable::hash(pair) >> shard_shift_; }
-  [[nodiscard]] bool relocating(std::uint32_t granule) const {
-    return granule >= relocation_.first && granule < relocation_.end;
-  }
   void validate_residents() const;
   void validate_witnesses() const;
   void validate_pairs() const;
@@ -150,24 +156,17 @@ class EngineCore {
   LevelsType levels_;
   Regrid regrid_;
 
-  /// Granules whose objects move to their homes in this step.
-  struct Relocation {
-    bool wanted = false;
-    std::uint32_t first = 0;
-    std::uint32_t end = 0;
-  } relocation_;
-
   typename GridFit<Scalar, Dim>::Result fitted_;  // with witness counts: where the grid is
   bool gridded_ = false;
-  bool dense_ = false;               // this step: most objects have changed
-  std::size_t objects_at_step_ = 0;  // how many there were when the latest step began
-  std::uint64_t last_changed_ = 0;   // ops of the latest step that had any
-  std::uint64_t pairs_ = 0;          // by the events
-  bool idle_ = true;                 // the latest step had nothing to do
-  bool regridding_ = false;          // with witness counts: this step inserts every object into a new grid
-  bool broken_ = false;              // a step was taken back, and there was no memory to make the cells anew
+  bool sweeping_ = false;    // the step that runs, or the latest, keeps no cells
+  bool celled_ = true;       // the cells are those of the latest step; else there are none
+  std::uint64_t pairs_ = 0;  // by the events
+  bool idle_ = true;         // the latest step had nothing to do
+  bool regridding_ = false;  // with witness counts: this step inserts every object into a new grid
   StepBudget budget_;
   std::size_t event_bytes_;
+  SceneSweep<Scalar, Dim> sweep_;
+  MethodChoice method_;
   StepList<std::uint32_t> marked_;  // granules that the step looks at
   StepItems<RouteBlock> blocks_;
   StepItems<GatherTask> gathers_;

@@ -13,6 +13,8 @@
 #include <sweepgrid/engine/envelopes.inl.hpp>
 #include <sweepgrid/engine/follow_scene.inl.hpp>
 #include <sweepgrid/engine/route.inl.hpp>
+#include <sweepgrid/engine/scene_sweep.inl.hpp>
+#include <sweepgrid/engine/sweep.inl.hpp>
 #include <sweepgrid/engine/take_back.inl.hpp>
 #include <sweepgrid/engine/validate.inl.hpp>
 #include <sweepgrid/grid/grid_fit.inl.hpp>
@@ -40,7 +42,7 @@ void require_valid(const Config& config) {
 
 template <class Scalar, int Dim>
 EngineCore<Scalar, Dim>::EngineCore(Config config, std::size_t event_bytes)
-    : config_(std::move(config)), event_bytes_(event_bytes) {
+    : config_(std::move(config)), event_bytes_(event_bytes), sweep_(objects_, budget_, event_bytes) {
   engine_core::require_valid<Scalar, Dim>(config_);
   executor_ = config_.executor ? config_.executor : make_executor(config_.threads);
   const auto workers = static_cast<std::size_t>(executor_->concurrency());
@@ -57,7 +59,10 @@ EngineCore<Scalar, Dim>::EngineCore(Config config, std::size_t event_bytes)
         name, after, [this, plan](std::vector<std::uint64_t>& costs) { (this->*plan)(costs); },
         [this, body](std::size_t task) { (this->*body)(task); });
   };
-  const auto routed = stage("route", {}, &EngineCore::plan_route, &EngineCore::route);
+  // A step either sweeps or goes through cells; the stages of the other way have no tasks.
+  const auto binned = stage("bin", {}, &EngineCore::plan_bin, &EngineCore::bin);
+  const auto swept = stage("sweep", {binned}, &EngineCore::plan_sweep, &EngineCore::sweep);
+  const auto routed = stage("route", {swept}, &EngineCore::plan_route, &EngineCore::route);
   const auto gathered = stage("gather", {routed}, &EngineCore::plan_gather, &EngineCore::gather);
   const auto drained = stage("drain", {gathered}, &EngineCore::plan_drain, &EngineCore::drain);
   reduce_stage_ = drained;
@@ -78,7 +83,6 @@ bool EngineCore<Scalar, Dim>::step() {
 
 template <class Scalar, int Dim>
 bool EngineCore<Scalar, Dim>::run_step() {
-  mend();
   counters_ = StepCounters{};
   regridding_ = false;
   idle_ = !objects_.anything_queued();
@@ -110,6 +114,7 @@ void EngineCore<Scalar, Dim>::cancel_step() noexcept {
 
 template <class Scalar, int Dim>
 void EngineCore<Scalar, Dim>::finish_step() {
+  if (sweeping_) return finish_sweep();
   std::size_t retired = 0;
   for (const RouteBlock& block : blocks_) retired += block.retired.items.size();
   objects_.reserve_free(retired);
@@ -123,21 +128,21 @@ template <class Scalar, int Dim>
 void EngineCore<Scalar, Dim>::commit_step() noexcept {
   ++steps_;
   if (idle_) return;
+  if (sweeping_) return commit_sweep();
   for (RouteBlock& block : blocks_) {
     counters_ += block.counters;
     objects_.free_ids(block.retired.items);
-    for (const auto& [object, home] : block.relocated.items) objects_.record(object).grid = home;
     block.note_step();
     block.restart();  // lest a step that fails before it routes frees ids again
   }
-  last_changed_ = counters_.inserts + counters_.updates + counters_.erases;
-  if (levels_.live().size() > 1)
-    objects_.set_widest(std::min(objects_.widest(), levels_.drop_empty(!relocation_.wanted)));
+  method_.note_cells(counters_);
+  if (levels_.live().size() > 1) objects_.set_widest(std::min(objects_.widest(), levels_.drop_empty()));
   marked_.note_step();
   blocks_.finish();
   gathers_.finish();
   tasks_.finish();
   for (const GridIndex grid : levels_.live()) levels_.grid(grid).note_step();
+  pass_sweep(1);
 }
 
 // An idle step takes next to no time, so lists are told of idle steps only now and then.
@@ -145,6 +150,7 @@ template <class Scalar, int Dim>
 void EngineCore<Scalar, Dim>::pass_idle_step() {
   constexpr std::size_t kIdleSteps = 8;  // a part of HighWater::kSteps
   tasks_.restart();
+  if constexpr (SceneSweep<Scalar, Dim>::kPossible) sweep_.rest();
   for (Shard& shard : shards_) shard.restart();
   if (++idle_steps_ == kIdleSteps) pass_idle_steps();
 }
@@ -157,6 +163,7 @@ void EngineCore<Scalar, Dim>::pass_idle_steps() {
   blocks_.pass(steps);
   gathers_.pass(steps);
   tasks_.pass(steps);
+  pass_sweep(steps);
   for (Shard& shard : shards_) shard.pass(steps);
   for (const GridIndex grid : levels_.live()) levels_.grid(grid).pass(steps);
 }
@@ -174,7 +181,7 @@ void EngineCore<Scalar, Dim>::count_events(std::size_t begins, std::size_t ends)
 
 template <class Scalar, int Dim>
 std::vector<PairKey> EngineCore<Scalar, Dim>::pairs() const {
-  if (broken_) return swept_pairs();
+  if (!celled_) return swept_pairs();
   std::vector<PairKey> pairs;
   if (counting()) {
     for (const Shard& shard : shards_) shard.witnesses.append_pairs(pairs);
@@ -196,7 +203,7 @@ Stats EngineCore<Scalar, Dim>::stats() const {
   }
   stats.objects = objects_.size();
   stats.pairs = pairs_;
-  stats.cell_size = levels_.cell_size();
+  stats.cell_size = levels_.live().empty() ? 0 : levels_.cell_size();
   stats.grids = levels_.live().size();
   stats.bytes_cells = levels_.bytes();
   for (const GridIndex index : levels_.live()) {
@@ -206,7 +213,8 @@ Stats EngineCore<Scalar, Dim>::stats() const {
     stats.bytes_queues += grid.queue_bytes();
   }
   stats.bytes_objects = objects_.bytes();
-  stats.bytes_queues += marked_.bytes() + blocks_.bytes() + gathers_.bytes() + tasks_.bytes() + graph_->bytes();
+  stats.bytes_queues +=
+      marked_.bytes() + blocks_.bytes() + gathers_.bytes() + tasks_.bytes() + graph_->bytes() + sweep_.bytes();
   stats.bytes_witnesses += shards_.capacity() * sizeof(Shard);
   for (const Shard& shard : shards_) stats.bytes_witnesses += shard.bytes();
   return stats;

@@ -109,7 +109,6 @@ bool KeyedEngine<Scalar, Dim>::step_with_envelopes() {
         return false;
       }
     } else {
-      p.core.mend();
     }
     if (p.filter ? !p.filter->run_step(query) : !query) p.order.rest();
   } catch (...) {

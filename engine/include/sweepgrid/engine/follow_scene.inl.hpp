@@ -83,7 +83,7 @@ void EngineCore<Scalar, Dim>::start_single(const typename GridFit<Scalar, Dim>::
   counters_.regrids = 1;
 }
 
-// New cells are for new objects and for those that change; the others follow over the next steps, a few in each.
+// New cells are made in one step for all objects.
 template <class Scalar, int Dim>
 void EngineCore<Scalar, Dim>::follow_with_levels() {
   const std::size_t objects = objects_.size();
@@ -93,34 +93,19 @@ void EngineCore<Scalar, Dim>::follow_with_levels() {
     start_family(result.cell_size, result.lower, boxes);
     regrid_.fitted(result.met, objects);
     gridded_ = true;
-  } else if (!config_.cell_size && !relocation_.wanted) {
-    if (regrid_.outgrown(objects)) {
-      const std::size_t news = objects > objects_at_step_ ? objects - objects_at_step_ : 0;
-      const auto boxes =
-          sample(std::min(std::max<std::size_t>(news / 2, 256), GridFit<Scalar, Dim>::sample_size(objects)));
-      const auto result = fit(boxes);
-      const double change = result.cell_size / levels_.cell_size();
+  } else if (!config_.cell_size && (regrid_.outgrown(objects) || regrid_.crowded() || regrid_.sparse())) {
+    const auto result = fit(sample(GridFit<Scalar, Dim>::sample_size(objects)));
+    const double change = result.cell_size / levels_.cell_size();
+    if (change > 1.25 || change < 0.8) {
+      make_cells();
+      counters_.regrids = 1;
+    } else if (regrid_.outgrown(objects)) {
       regrid_.fitted(result.met, objects);
-      if (change > 1.3 || change < 0.75) {
-        start_family(result.cell_size, result.lower, boxes);
-        relocation_.wanted = true;
-      }
-    } else if (regrid_.crowded() || regrid_.sparse()) {
-      const auto boxes = sample(GridFit<Scalar, Dim>::sample_size(objects));
-      const auto result = fit(boxes);
-      const double change = result.cell_size / levels_.cell_size();
-      if (change > 1.25 || change < 0.8) {
-        start_family(result.cell_size, result.lower, boxes);
-        regrid_.fitted(result.met, objects);
-        relocation_.wanted = true;
-      } else {
-        regrid_.resign();
-      }
+    } else {
+      regrid_.resign();
     }
   }
-  if (levels_.make_room(objects_.widest()) && objects_at_step_ > 0) relocation_ = {true, 0, 0};
-  plan_relocation();
-  objects_at_step_ = objects;
+  levels_.make_room(objects_.widest());
 }
 
 template <class Scalar, int Dim>
@@ -130,24 +115,7 @@ void EngineCore<Scalar, Dim>::start_family(double cell_size, const std::array<do
   levels_.make_room(objects_.widest());
   for (const BoxType& box : boxes) static_cast<void>(levels_.home(LevelsType::width(box)));  // asks for its level
   levels_.make_room(objects_.widest());
-  relocation_ = {};
   counters_.regrids = 1;
-}
-
-// A part of as many objects as the latest step changed. While there are two families every changed object is shown to
-// both, which makes a step two to three times as long; with larger slices steps become four times as long, but fewer.
-template <class Scalar, int Dim>
-void EngineCore<Scalar, Dim>::plan_relocation() {
-  relocation_.first = relocation_.end;
-  if (!relocation_.wanted) return;
-  const std::uint32_t granules = objects_.granules();
-  if (relocation_.first >= granules) {
-    relocation_ = {};
-    return;
-  }
-  const std::uint64_t changed = last_changed_;
-  const auto share = static_cast<std::uint32_t>(std::max<std::uint64_t>(1, changed / 8 / Objects::kGranule));
-  relocation_.end = std::min(granules, relocation_.first + share);
 }
 
 }  // namespace sweepgrid

@@ -133,6 +133,15 @@ class ObjectTable {
   }
   [[nodiscard]] bool granule_marked(std::uint32_t granule) const { return marks_[granule] != 0; }
   void unmark_granule(std::uint32_t granule) { marks_[granule] = 0; }
+  /// What was queued for the objects of a granule is done, but for retire().
+  void settle(std::uint32_t granule) {
+    if (!granule_marked(granule)) return;
+    unmark_granule(granule);
+    const ObjectId first = granule * kGranule;
+    std::uint8_t* const states = &states_[first];  // a granule is contiguous
+    const std::uint32_t count = std::min(bound() - first, kGranule);
+    for (std::uint32_t i = 0; i < count; ++i) states[i] &= kLive;
+  }
   void nothing_queued() {
     queued_.store(false, std::memory_order_relaxed);
     ++latest_generation_;

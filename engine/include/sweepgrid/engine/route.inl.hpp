@@ -18,24 +18,23 @@ namespace engine_core {
 /// Blocks of objects for each worker: fewer, because each has a queue to every shard of a grid.
 inline constexpr std::size_t kBlocksPerWorker = 3;
 
-/// Share of objects that must have changed for cells to ask for boxes instead of being told.
-inline constexpr double kDenseShare = 0.4;
-
 }  // namespace engine_core
 
 template <class Scalar, int Dim>
 void EngineCore<Scalar, Dim>::plan_route(std::vector<std::uint64_t>& costs) {
-  pass_idle_steps();
+  if (sweeping_) return;
+  if (!celled_) {
+    make_cells();
+    counters_.regrids = 1;
+  }
   follow_scene();
   objects_.nothing_queued();
   const std::uint32_t granules = objects_.granules();
   marked_.restart();
   std::vector<std::uint32_t>& marked = marked_.items;
   for (std::uint32_t granule = 0; granule < granules; ++granule) {
-    if (regridding_ || relocating(granule) || objects_.granule_marked(granule)) marked.push_back(granule);
+    if (regridding_ || objects_.granule_marked(granule)) marked.push_back(granule);
   }
-  const bool rows = config_.cell.kind == CellKind::kRows || config_.cell.kind == CellKind::kAuto;
-  dense_ = rows && !regridding_ && most_changed(marked);
   const auto workers = static_cast<std::size_t>(executor_->concurrency());
   const bool small = workers == 1 || marked.size() < 8;
   const std::size_t wanted = small ? 1 : std::min(marked.size(), engine_core::kBlocksPerWorker * workers);
@@ -49,32 +48,14 @@ void EngineCore<Scalar, Dim>::plan_route(std::vector<std::uint64_t>& costs) {
     block.last_granule = marked[end - 1];
     costs.push_back(end - first);
   }
-  for (const GridIndex grid : levels_.live()) levels_.grid(grid).begin_step(wanted, dense_, &budget_);
-}
-
-// Judged by every 16th of the granules with a mark; in the others nothing has changed.
-template <class Scalar, int Dim>
-bool EngineCore<Scalar, Dim>::most_changed(const std::vector<std::uint32_t>& granules) const {
-  const double marked = static_cast<double>(granules.size()) / std::max(1U, objects_.granules());
-  if (marked <= engine_core::kDenseShare) return false;
-  std::size_t seen = 0;
-  std::size_t changed = 0;
-  for (std::size_t i = 0; i < granules.size(); i += 16) {
-    const ObjectId first = granules[i] * Objects::kGranule;
-    const ObjectId end = std::min(objects_.bound() - first, Objects::kGranule) + first;
-    for (ObjectId object = first; object < end; ++object) {
-      changed += (objects_.state(object) & Objects::kUpdated) != 0 ? 1 : 0;
-    }
-    seen += end - first;
-  }
-  return marked * static_cast<double>(changed) > engine_core::kDenseShare * static_cast<double>(seen);
+  for (const GridIndex grid : levels_.live()) levels_.grid(grid).begin_step(wanted, &budget_);
 }
 
 template <class Scalar, int Dim>
 void EngineCore<Scalar, Dim>::route(std::size_t block) {
   RouteBlock& out = blocks_[block];
   for (std::uint32_t granule = out.first_granule; granule <= out.last_granule; ++granule) {
-    if (!regridding_ && !relocating(granule) && !objects_.granule_marked(granule)) continue;
+    if (!regridding_ && !objects_.granule_marked(granule)) continue;
     route_granule(block, granule);
   }
   for (const GridIndex grid : levels_.live()) {
@@ -91,7 +72,7 @@ void EngineCore<Scalar, Dim>::route_granule(std::size_t block, std::uint32_t gra
   objects_.unmark_granule(granule);
   const ObjectId first = granule * Objects::kGranule;
   const std::uint32_t count = std::min(objects_.bound() - first, Objects::kGranule);
-  const std::uint8_t wanted = regridding_ || relocating(granule) ? 0xff : Objects::kQueued;
+  const std::uint8_t wanted = regridding_ ? 0xff : Objects::kQueued;
   const std::uint8_t* const states = &objects_.state(first);  // a granule is contiguous
   std::array<std::uint8_t, Objects::kGranule> chosen;
   std::uint32_t used = 0;
@@ -147,7 +128,6 @@ inline void EngineCore<Scalar, Dim>::route_object(std::size_t block, ObjectId ob
   } else if (regridding_) {
     levels_.grid(record.grid).route_insert(block, object, record.box);
   }
-  if (relocating(object / Objects::kGranule)) relocate(block, object, record, out);
 }
 
 template <class Scalar, int Dim>
@@ -185,15 +165,6 @@ void EngineCore<Scalar, Dim>::show(std::size_t block, ObjectId object, GridIndex
     if (other == home) continue;
     levels_.grid(other).route_visit(block, object, before, after, !levels_.coarser(other, home));
   }
-}
-
-template <class Scalar, int Dim>
-void EngineCore<Scalar, Dim>::relocate(std::size_t block, ObjectId object, const Record& record, RouteBlock& out) {
-  const GridIndex home = levels_.home(LevelsType::width(record.box));
-  if (home == record.grid) return;
-  levels_.grid(record.grid).route_detach(block, object, record.box);
-  levels_.grid(home).route_attach(block, object, record.box);
-  out.relocated.items.emplace_back(object, home);
 }
 
 }  // namespace sweepgrid

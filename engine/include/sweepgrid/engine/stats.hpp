@@ -17,8 +17,9 @@ struct StepCounters {
   std::uint64_t updates = 0;        ///< objects that lived on with a changed box
   std::uint64_t erases = 0;         ///< objects erased
   std::uint64_t migrations = 0;     ///< updates that changed the cell range
-  std::uint64_t cell_ops = 0;       ///< ops queued to cells; an object in c cells counts c times
-  std::uint64_t cells_drained = 0;  ///< active cells
+  std::uint64_t sweeps = 0;         ///< 1 when all objects were swept, and no cells kept; else 0
+  std::uint64_t cell_ops = 0;       ///< ops queued to cells; an object in c cells counts c times. In a sweep: in c rows
+  std::uint64_t cells_drained = 0;  ///< active cells. In a sweep: rows
   std::uint64_t regrids = 0;        ///< 1 when the grid was derived anew, else 0
   std::uint64_t begins = 0;
   std::uint64_t ends = 0;
@@ -44,7 +45,7 @@ struct Stats {
   std::size_t objects = 0;
   std::size_t grids = 0;  ///< of different cell sizes
   std::size_t cells = 0;  ///< that hold an object
-  double cell_size = 0;   ///< of the finest grid, world units
+  double cell_size = 0;   ///< of the finest grid, world units; 0 while there are no cells
   std::size_t pairs = 0;  ///< overlapping now
 
   /// Heap bytes held now, unused capacity included; neither what keys hold of their own, nor what oneTBB does.

@@ -23,16 +23,15 @@ struct Route {
   StepCounters counters;
   std::uint64_t calls = 0;
   StepList<ObjectId> retired;
-  StepList<std::pair<ObjectId, GridIndex>> relocated;  // at the end of the step
 
   void restart() {
     counters = StepCounters{};
     calls = 0;
-    retired.restart(), relocated.restart();
+    retired.restart();
   }
-  void note_step() { retired.note_step(), relocated.note_step(); }
-  void pass(std::size_t steps) { retired.pass(steps), relocated.pass(steps); }
-  [[nodiscard]] std::size_t bytes() const { return retired.bytes() + relocated.bytes(); }
+  void note_step() { retired.note_step(); }
+  void pass(std::size_t steps) { retired.pass(steps); }
+  [[nodiscard]] std::size_t bytes() const { return retired.bytes(); }
 };
 
 /// A shard of a grid with queued calls, and how its active cells are cut into tasks.

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <functional>
 #include <utility>
 #include <vector>
 
@@ -43,7 +45,13 @@ class SteppedBoxes {
 
 template <class Scalar, int Dim>
 void EngineCore<Scalar, Dim>::take_back_step() noexcept {
-  broken_ = true;
+  if (sweeping_) {
+    if constexpr (SceneSweep<Scalar, Dim>::kPossible) sweep_.cancel();
+    counters_ = {};
+    return;
+  }
+  levels_.clear();
+  celled_ = gridded_ = false;
   const std::uint64_t step = steps_ + 1;
   for (const RouteBlock& block : blocks_) {
     for (const ObjectId object : block.retired.items) {
@@ -65,49 +73,84 @@ void EngineCore<Scalar, Dim>::take_back_step() noexcept {
   gathers_ = {};
   tasks_ = {};
   counters_ = {};
-  try {
-    restore_cells();
-  } catch (...) {
-    // The next step tries again; until then pairs() does without cells.
-  }
 }
 
+// Cells for all objects with the boxes of the latest step, in a grid that suits them.
 template <class Scalar, int Dim>
-void EngineCore<Scalar, Dim>::restore_cells() {
-  regridding_ = false;
-  relocation_ = {};
-  levels_.clear();
-  for (Shard& shard : shards_) shard = Shard();
-  const SteppedBoxes boxes(objects_);
+void EngineCore<Scalar, Dim>::make_cells() {
+  celled_ = gridded_ = false;
   const auto scene = sample(GridFit<Scalar, Dim>::sample_size(objects_.size()));
   const auto result = fit(scene);
   if (counting()) {
     start_single(result, bounded(result));
+    fill_counted();
   } else {
     start_family(result.cell_size, result.lower, scene);
     regrid_.fitted(result.met, objects_.size());
     gridded_ = true;
+    fill_cells();
   }
-  for (const GridIndex grid : levels_.live()) levels_.grid(grid).begin_step(1, false);
-  for (ObjectId object = 0; object < objects_.bound(); ++object) {
-    if (!boxes.has(object)) continue;
-    Record& record = objects_.record(object);
-    record.grid = levels_.home(LevelsType::width(record.box));
-    if (counting()) {
-      levels_.grid(record.grid).route_insert(0, object, record.box);
-    } else {
-      levels_.grid(record.grid).route_attach(0, object, record.box);
-    }
-  }
-  for (const GridIndex grid : levels_.live()) restore_cells_of(levels_.grid(grid));
-  counters_ = {};
-  broken_ = false;
+  celled_ = true;
 }
 
+// Two stages: objects to the grids, by block; the calls of a part of a grid into its cells.
 template <class Scalar, int Dim>
-void EngineCore<Scalar, Dim>::restore_cells_of(GridType& grid) {
+void EngineCore<Scalar, Dim>::fill_cells() {
+  const auto workers = static_cast<std::size_t>(executor_->concurrency());
+  const std::uint32_t granules = objects_.granules();
+  const std::size_t blocks =
+      workers == 1 ? 1 : std::min<std::size_t>(granules + 1, engine_core::kBlocksPerWorker * workers);
+  const auto for_block = [&](std::size_t block, auto&& visit) {
+    const auto first = static_cast<std::uint32_t>(block * granules / blocks);
+    const auto last = static_cast<std::uint32_t>((block + 1) * granules / blocks);
+    for (ObjectId object = first * Objects::kGranule; object < std::min(last * Objects::kGranule, objects_.bound());
+         ++object) {
+      if (stepped<Scalar, Dim>(objects_.state(object))) visit(object, stepped_box(object));
+    }
+  };
+  const auto for_each = [&](std::size_t tasks, const auto& body) {
+    if (workers == 1 || tasks == 1) {
+      for (std::size_t task = 0; task < tasks; ++task) body(task);
+    } else {
+      executor_->for_each(tasks, std::cref(body));
+    }
+  };
+  for_each(blocks, [&](std::size_t block) {  // asks for levels
+    for_block(block, [&](ObjectId, const BoxType& box) { static_cast<void>(levels_.home(LevelsType::width(box))); });
+  });
+  levels_.make_room(objects_.widest());
+  for (const GridIndex grid : levels_.live()) levels_.grid(grid).begin_step(blocks);
+  for_each(blocks, [&](std::size_t block) {
+    for_block(block, [&](ObjectId object, const BoxType& box) {
+      Record& record = objects_.record(object);
+      record.grid = levels_.home(LevelsType::width(box));
+      levels_.grid(record.grid).route_insert(block, object, box);
+    });
+    for (const GridIndex grid : levels_.live()) levels_.grid(grid).end_block(block);
+  });
+  std::vector<std::pair<GridIndex, std::size_t>> parts;
+  for (const GridIndex grid : levels_.live()) {
+    for (std::size_t shard = 0; shard < levels_.grid(grid).shards(); ++shard) parts.emplace_back(grid, shard);
+  }
+  for_each(parts.size(), [&](std::size_t part) {
+    DrainOutput<Scalar, Dim> out;
+    const auto box_of = [&](ObjectId object) -> const BoxType& { return stepped_box(object); };
+    levels_.grid(parts[part].first).fill(parts[part].second, box_of, out);
+  });
+}
+
+// With witness counts, cells count the pairs that they see.
+template <class Scalar, int Dim>
+void EngineCore<Scalar, Dim>::fill_counted() {
+  for (Shard& shard : shards_) shard = Shard();
+  const SteppedBoxes boxes(objects_);
+  GridType& grid = levels_.grid(levels_.finest());
+  grid.begin_step(1);
+  for (ObjectId object = 0; object < objects_.bound(); ++object) {
+    if (boxes.has(object)) grid.route_insert(0, object, objects_.record(object).box);
+  }
   constexpr std::size_t kCellsAtOnce = 64;  // so that the deltas of all cells need not be kept at the same time
-  const StepBoxes<Scalar, Dim> boxes(objects_, steps_ + 1);
+  const StepBoxes<Scalar, Dim> step_boxes(objects_, steps_ + 1);
   DrainOutput<Scalar, Dim> out;
   grid.end_block(0);
   for (std::size_t part = 0; part < grid.shards(); ++part) {
@@ -115,11 +158,10 @@ void EngineCore<Scalar, Dim>::restore_cells_of(GridType& grid) {
     const auto cells = grid.active(part);
     for (std::size_t first = 0; first < cells.size(); first += kCellsAtOnce) {
       out.clear();
-      grid.drain(part, cells.subspan(first, std::min(kCellsAtOnce, cells.size() - first)), boxes, out);
+      grid.drain(part, cells.subspan(first, std::min(kCellsAtOnce, cells.size() - first)), step_boxes, out);
       for (const OverlapDelta& delta : out.deltas) shards_[shard_of(delta.pair)].witnesses.apply({&delta, 1});
     }
   }
-  if (!counting()) return;
   for (Shard& shard : shards_) {
     shard.witnesses.finish(shard.begins.items, shard.ends.items);
     shard.begins = {};

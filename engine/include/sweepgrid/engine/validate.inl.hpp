@@ -73,6 +73,7 @@ void EngineCore<Scalar, Dim>::validate() const {
     require_invariant((objects_.state(object) & Objects::kQueued) == 0, "G2",
                       [&] { return "object " + std::to_string(object) + " still has a queued op"; });
   }
+  if (!celled_) return validate_pairs();
   for (const GridIndex index : levels_.live()) {
     levels_.grid(index).for_each_cell([](const auto& cell) { cell.kind().validate(); });
   }
@@ -129,7 +130,11 @@ void EngineCore<Scalar, Dim>::validate_residents() const {
 template <class Scalar, int Dim>
 void EngineCore<Scalar, Dim>::validate_pairs() const {
   std::size_t overlapping = 0;
-  for_each_pair([&](PairKey) { ++overlapping; });
+  if (celled_) {
+    for_each_pair([&](PairKey) { ++overlapping; });
+  } else {
+    overlapping = swept_pairs().size();
+  }
   require_invariant(overlapping == pairs_, "S4", [&] {
     return std::to_string(overlapping) + " pairs overlap, but by the events there should be " + std::to_string(pairs_);
   });

@@ -39,6 +39,12 @@ class Cell {
     other_->cell->drain(ops, deltas, counters);
   }
 
+  /// Takes residents in without a word about pairs. Precondition: it has none.
+  void fill(std::span<const CellOp<Scalar, Dim>> ops, SapCounters& counters) {
+    if (has_rows()) return rows_.refill(ops);
+    other_->cell->transfer(ops, counters);
+  }
+
   /// Kind::visit(). `residents`: memory for them.
   void visit(std::span<const typename Kind::Visit> visits, std::vector<typename Kind::Resident>& residents,
              DeltaList& deltas, SapCounters& counters) const {

@@ -31,7 +31,6 @@ struct DrainOutput {
   SapCounters counters;
 
   std::vector<CellOp<Scalar, Dim>> ops;
-  std::vector<CellOp<Scalar, Dim>> transfers;
   std::vector<typename SweepAndPrune<Scalar, Dim>::Resident> residents;
   typename RowCell<Scalar, Dim>::RefreshScratch refresh;
   std::vector<typename SweepAndPrune<Scalar, Dim>::Visit> visits;
@@ -72,15 +71,15 @@ struct DrainOutput {
   /// Heap bytes held.
   [[nodiscard]] std::size_t bytes() const {
     const auto of = [](const auto& list) { return list.capacity() * sizeof(list[0]); };
-    return deltas.bytes() + of(runs) + of(emptied) + of(ops) + of(transfers) + of(residents) + of(refresh.boxes) +
-           of(refresh.moved) + of(visits) + of(sides) + of(passing) + passing_rows.bytes();
+    return deltas.bytes() + of(runs) + of(emptied) + of(ops) + of(residents) + of(refresh.boxes) + of(refresh.moved) +
+           of(visits) + of(sides) + of(passing) + passing_rows.bytes();
   }
 
  private:
   // One number for all that is filled anew for each cell: none is longer than the cell's calls and residents.
   void release_scratch() {
     const auto release = [this](auto&... lists) { (most_in_cell_.release(lists), ...); };
-    release(ops, transfers, residents, refresh.boxes, refresh.moved, visits, sides, passing);
+    release(ops, residents, refresh.boxes, refresh.moved, visits, sides, passing);
     if (passing_rows.bytes() > most_in_cell_.allowed() * sizeof(CellOp<Scalar, Dim>)) passing_rows = {};
   }
 
@@ -116,10 +115,8 @@ class Grid {
 
   [[nodiscard]] const GridSpec<Scalar, Dim>& spec() const { return spec_; }
 
-  /// Sets in how many blocks ops arrive. `dense`: most objects have changed, so every cell
-  /// asks for its residents' boxes by itself, and updates that stay within their cells need no call. `budget`: what
-  /// calls are charged to, kCallBytes for each; null: nothing.
-  void begin_step(std::size_t blocks, bool dense, StepBudget* budget = nullptr);
+  /// Sets in how many blocks ops arrive. `budget`: what calls are charged to, kCallBytes for each; null: nothing.
+  void begin_step(std::size_t blocks, StepBudget* budget = nullptr);
   static constexpr std::uint64_t kCallBytes = 16;
   /// To be called after the last op of the block is routed.
   void end_block(std::size_t block) { look_up(block); }
@@ -130,10 +127,6 @@ class Grid {
   /// Returns whether the cell range changed (a migration: erases, inserts and updates in the cells concerned).
   bool route_update(std::size_t block, ObjectId object, const BoxType& before, const BoxType& after);
   void route_erase(std::size_t block, ObjectId object, const BoxType& before);
-
-  /// Takes over an object from another grid, or hands it over, at the end of the step; its pairs do not change.
-  void route_attach(std::size_t block, ObjectId object, const BoxType& box);
-  void route_detach(std::size_t block, ObjectId object, const BoxType& box);
 
   /// Shows an object of another grid that changed to the cells that it may concern. Null: it had no box, or has none.
   /// `resting_only`: only residents that rest in this step need to hear of it, so cells that both boxes cover wholly
@@ -148,6 +141,11 @@ class Grid {
   /// the end of the step: before(id), after(id), prefetch(id).
   template <class Boxes>
   void drain(std::size_t shard, std::span<const ActiveCell> cells, const Boxes& boxes, Output& out);
+
+  /// In place of gather() and drain() for a grid without cells: takes in whom route_insert() named, without a word
+  /// about pairs. `box_of(id)`: the box that route_insert() was given.
+  template <class BoxOf>
+  void fill(std::size_t shard, const BoxOf& box_of, Output& out);
 
   /// Drops those of the cells that are still empty. Not beside other calls.
   void drop_empty(std::size_t shard, std::span<const std::uint32_t> cells);
@@ -212,10 +210,6 @@ class Grid {
   template <class Boxes>
   static std::size_t take_ops(std::span<const Call> calls, const Boxes& boxes, Output& out);
   template <class Boxes>
-  std::size_t apply_ops(CellType& cell, const Boxes& boxes, Output& out) const;
-  template <class Boxes>
-  static void ask_residents(const CellType& cell, const Boxes& boxes, Output& out);
-  template <class Boxes>
   static void take_visits(std::span<const Call> calls, const Boxes& boxes, Output& out);
   template <class Boxes>
   std::size_t drain_visited(CellType& cell, std::span<const Call> calls, const Boxes& boxes, Output& out) const;
@@ -227,7 +221,6 @@ class Grid {
   GridSpec<Scalar, Dim> spec_;
   CellOptions options_;
   int shard_shift_ = 64;
-  bool dense_ = false;
   StepBudget* budget_ = nullptr;
   std::vector<Shard> shards_;
   std::vector<Waiting> waiting_;  // by block

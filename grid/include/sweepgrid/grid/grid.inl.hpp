@@ -18,11 +18,10 @@ Grid<Scalar, Dim>::Grid(const GridSpec<Scalar, Dim>& spec, const CellOptions& op
     : spec_(spec), options_(options), shard_shift_(64 - std::countr_zero(shards)), shards_(shards) {}
 
 template <class Scalar, int Dim>
-void Grid<Scalar, Dim>::begin_step(std::size_t blocks, bool dense, StepBudget* budget) {
+void Grid<Scalar, Dim>::begin_step(std::size_t blocks, StepBudget* budget) {
   ops_.reset(blocks, shards_.size());
   late_.reset(blocks, shards_.size());
   waiting_.resize(blocks);
-  dense_ = dense;
   budget_ = budget;
 }
 
@@ -49,7 +48,7 @@ auto Grid<Scalar, Dim>::make_cell_at(Shard& shard, std::uint64_t code, CellId& p
 // The cell of a call that did not exist when the call was queued. Residents make it, visitors only look for it.
 template <class Scalar, int Dim>
 auto Grid<Scalar, Dim>::locate(Shard& shard, const OpQueues::Fresh& op) -> CellId {
-  if (op.call == CellCall::kInsert || op.call == CellCall::kAttach) {
+  if (op.call == CellCall::kInsert) {
     CellId& place = shard.directory.place(op.cell);
     return place != CellDirectory<Dim>::kAbsent ? place : make_cell_at(shard, op.cell, place);
   }
@@ -66,7 +65,7 @@ void Grid<Scalar, Dim>::gather(std::size_t index) {
   shard.active.clear();
   std::size_t total = 0;
   const auto count = [&](CellId id) {
-    if (shard.queue[id]++ == 0 && !dense_) shard.active.push_back({id, 0, 0, 0});
+    if (shard.queue[id]++ == 0) shard.active.push_back({id, 0, 0, 0});
     ++total;
   };
   for (OpQueues* queues : {&ops_, &late_}) {
@@ -78,11 +77,6 @@ void Grid<Scalar, Dim>::gather(std::size_t index) {
         op.cell = id;
         if (id != CellDirectory<Dim>::kAbsent) count(id);
       }
-    }
-  }
-  if (dense_) {
-    for (CellId id = 0; id < shard.cells.size(); ++id) {
-      if (shard.queue[id] != 0 || shard.cells[id].size() != 0) shard.active.push_back({id, 0, 0, 0});
     }
   }
   std::uint32_t first = 0;
@@ -144,8 +138,12 @@ void Grid<Scalar, Dim>::drain_cell(Shard& shard, const ActiveCell& active, const
   const auto calls = std::span<const Call>(shard.calls).subspan(active.first_call, active.call_count);
   out.note_cell(calls.size(), cell.size());
   const std::size_t heard = take_ops(calls, boxes, out);
-  const std::size_t ops =
-      heard == calls.size() ? apply_ops(cell, boxes, out) : drain_visited(cell, calls.subspan(heard), boxes, out);
+  std::size_t ops = heard;
+  if (heard == calls.size()) {
+    cell.drain(out.ops, out.deltas, out.counters);
+  } else {
+    ops = drain_visited(cell, calls.subspan(heard), boxes, out);
+  }
   if (judged) cell.choose_kind(ops, out.counters - counters_before, options_, out.counters);
   if (out.deltas.size() > before) out.runs.push_back({out.deltas.size(), cell.code()});
   if (cell.size() == 0) out.emptied.push_back(active.cell);
@@ -168,63 +166,13 @@ std::size_t Grid<Scalar, Dim>::take_ops(std::span<const Call> calls, const Boxes
   return count;
 }
 
-// Returns how many ops there were.
-template <class Scalar, int Dim>
-template <class Boxes>
-std::size_t Grid<Scalar, Dim>::apply_ops(CellType& cell, const Boxes& boxes, Output& out) const {
-  if (!dense_) {
-    cell.drain(out.ops, out.deltas, out.counters);
-    return out.ops.size();
-  }
-  if (!cell.has_rows()) {
-    ask_residents(cell, boxes, out);
-    cell.drain(out.ops, out.deltas, out.counters);
-    return out.ops.size();
-  }
-  // What goes has its old box, like those that stay; what comes meets the new ones. So each pair still changes once.
-  const auto inserts =
-      std::partition(out.ops.begin(), out.ops.end(), [](const auto& op) { return op.kind == OpKind::kErase; });
-  const auto erases = static_cast<std::size_t>(inserts - out.ops.begin());
-  const auto ops = std::span(std::as_const(out.ops));
-  cell.drain(ops.first(erases), out.deltas, out.counters);
-  const std::size_t updates = cell.rows().refresh(boxes, out.refresh, out.deltas, out.counters);
-  cell.drain(ops.subspan(erases), out.deltas, out.counters);
-  return out.ops.size() + updates;
-}
-
-// Adds the updates of a dense step, for kinds that do not ask for boxes themselves.
-template <class Scalar, int Dim>
-template <class Boxes>
-void Grid<Scalar, Dim>::ask_residents(const CellType& cell, const Boxes& boxes, Output& out) {
-  out.residents.clear();
-  cell.kind().append_residents(out.residents);
-  const std::size_t called = out.ops.size();
-  for (const auto& resident : out.residents) {
-    const ObjectId object = resident.object;
-    const auto is_called = [&] {
-      for (std::size_t i = 0; i < called; ++i) {
-        if (out.ops[i].object == object) return true;
-      }
-      return false;
-    };
-    if (!boxes.changed(object) || is_called()) continue;
-    out.ops.push_back({object, OpKind::kUpdate, OrderedBox<Scalar, Dim>(boxes.after(object))});
-  }
-}
-
-// Calls after the ops: visits and transfers, with boxes.
+// Calls after the ops, with boxes.
 template <class Scalar, int Dim>
 template <class Boxes>
 void Grid<Scalar, Dim>::take_visits(std::span<const Call> calls, const Boxes& boxes, Output& out) {
   using Ordered = OrderedBox<Scalar, Dim>;
   out.visits.clear();
-  out.transfers.clear();
   for (const auto& [object, call] : calls) {
-    if (call >= CellCall::kAttach) {
-      out.transfers.push_back(
-          {object, call == CellCall::kAttach ? OpKind::kInsert : OpKind::kErase, Ordered(boxes.after(object))});
-      continue;
-    }
     typename SweepAndPrune<Scalar, Dim>::Visit visit;
     visit.object = object;
     visit.was = call != CellCall::kVisitIs;
@@ -244,10 +192,9 @@ std::size_t Grid<Scalar, Dim>::drain_visited(CellType& cell, std::span<const Cal
                                              Output& out) const {
   take_visits(calls, boxes, out);
   std::size_t ops = 0;
-  if (cell.has_rows() && (dense_ || !out.ops.empty())) {
+  if (cell.has_rows() && !out.ops.empty()) {
     ops = refresh_visited(cell, boxes, out);
   } else {
-    if (dense_) ask_residents(cell, boxes, out);
     ops = out.ops.size();
     if (ops == 0) {
       cell.visit(out.visits, out.residents, out.deltas, out.counters);
@@ -257,7 +204,6 @@ std::size_t Grid<Scalar, Dim>::drain_visited(CellType& cell, std::span<const Cal
       cell.visit(sides(out.visits, false, out), out.residents, out.deltas, out.counters);
     }
   }
-  if (!out.transfers.empty()) cell.kind().transfer(out.transfers, out.counters);
   return ops;
 }
 
@@ -298,6 +244,26 @@ auto Grid<Scalar, Dim>::sides(const Visits& visits, bool were, Output& out) -> c
     (were ? out.sides.back().is : out.sides.back().was) = false;
   }
   return out.sides;
+}
+
+template <class Scalar, int Dim>
+template <class BoxOf>
+void Grid<Scalar, Dim>::fill(std::size_t index, const BoxOf& box_of, Output& out) {
+  gather(index);
+  Shard& shard = shards_[index];
+  constexpr std::size_t kAhead = 24;
+  for (const ActiveCell& active : shard.active) {
+    const auto calls = std::span<const Call>(shard.calls).subspan(active.first_call, active.call_count);
+    out.ops.clear();
+    out.note_cell(calls.size(), 0);
+    for (std::size_t i = 0; i < calls.size(); ++i) {
+      // Calls of the next cells follow.
+      const std::size_t ahead = std::min<std::size_t>(active.first_call + i + kAhead, shard.calls.size() - 1);
+      sweepgrid::prefetch(&box_of(shard.calls[ahead].object));
+      out.ops.push_back({calls[i].object, OpKind::kInsert, OrderedBox<Scalar, Dim>(box_of(calls[i].object))});
+    }
+    shard.cells[active.cell].fill(out.ops, out.counters);
+  }
 }
 
 template <class Scalar, int Dim>

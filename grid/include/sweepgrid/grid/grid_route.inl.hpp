@@ -68,12 +68,11 @@ bool Grid<Scalar, Dim>::route_update(std::size_t block, ObjectId object, const B
   const Range range = spec_.range(after);
   const Range old_range = spec_.range(before);
   if (range == old_range) [[likely]] {
-    if (!dense_) call_all(block, range, object, CellCall::kUpdate);
+    call_all(block, range, object, CellCall::kUpdate);
     return false;
   }
   range.for_each([&](std::uint64_t cell) {
     const bool known = old_range.contains(Code::coordinates(cell));
-    if (known && dense_) return;
     call(block, cell, object, known ? CellCall::kUpdate : CellCall::kInsert);
   });
   old_range.for_each([&](std::uint64_t cell) {
@@ -85,16 +84,6 @@ bool Grid<Scalar, Dim>::route_update(std::size_t block, ObjectId object, const B
 template <class Scalar, int Dim>
 void Grid<Scalar, Dim>::route_erase(std::size_t block, ObjectId object, const BoxType& before) {
   call_all(block, spec_.range(before), object, CellCall::kErase);
-}
-
-template <class Scalar, int Dim>
-void Grid<Scalar, Dim>::route_attach(std::size_t block, ObjectId object, const BoxType& box) {
-  call_all(block, spec_.range(box), object, CellCall::kAttach);
-}
-
-template <class Scalar, int Dim>
-void Grid<Scalar, Dim>::route_detach(std::size_t block, ObjectId object, const BoxType& box) {
-  call_all(block, spec_.range(box), object, CellCall::kDetach);
 }
 
 template <class Scalar, int Dim>

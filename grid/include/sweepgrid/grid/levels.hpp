@@ -19,7 +19,7 @@ using GridIndex = std::uint8_t;
 
 /// The grids of a scene: a family of levels, each with cells four times as wide as the one before, so that a box is in
 /// few cells whatever its size; the last is one cell over everything. A level exists once a box asks for it. An object
-/// lives in one grid. While a scene moves to a family of other cell sizes, the grids of both exist.
+/// lives in one grid.
 ///
 /// Not thread-safe but for home(), which many may call at once.
 template <class Scalar, int Dim>
@@ -39,7 +39,7 @@ class Levels {
     return static_cast<double>(width);
   }
 
-  /// From now on, homes are in a new family. `shards`: of each of its grids.
+  /// Drops all grids. From now on, homes are in a new family. `shards`: of each of its grids.
   void start_family(double cell_size, const std::array<double, Dim>& origin, const CellOptions& cells,
                     std::size_t shards);
   /// Drops all grids. Precondition of what follows: a new family, or a single grid.
@@ -51,7 +51,7 @@ class Levels {
   /// there are new homes.
   bool make_room(double widest);
 
-  /// Where a box of this width should live: the finest existing grid of the newest family that holds it.
+  /// Where a box of this width should live: the finest existing grid that holds it.
   /// Precondition: make_room() for as wide a box.
   [[nodiscard]] GridIndex home(double width) const;
   /// Whether a box of this width may stay in the grid: it is in few cells there.
@@ -66,11 +66,9 @@ class Levels {
   [[nodiscard]] const GridType& grid(GridIndex index) const { return *grids_[index]; }
   /// Those that exist, in order of index.
   [[nodiscard]] const std::vector<GridIndex>& live() const { return live_; }
-  /// A strict total order.
+  /// A strict total order, for no two have cells of one size.
   [[nodiscard]] bool coarser(GridIndex a, GridIndex b) const {
-    const double size_a = grids_[a]->spec().cell_size();
-    const double size_b = grids_[b]->spec().cell_size();
-    return size_a != size_b ? size_a > size_b : a > b;
+    return grids_[a]->spec().cell_size() > grids_[b]->spec().cell_size();
   }
 
   /// Heap bytes held beside what the grids say of themselves.
@@ -79,9 +77,8 @@ class Levels {
            widest_.capacity() * sizeof(widest_[0]) + live_.capacity() * sizeof(live_[0]);
   }
 
-  /// Drops the grids that have no cell: of older families, and if `homes_too` of the newest, but for its finest. Those
-  /// of the newest are to stay as long as objects are on their way to them. Returns how wide a box now has a home.
-  double drop_empty(bool homes_too);
+  /// Drops the grids that have no cell, but for the finest. Returns how wide a box now has a home.
+  double drop_empty();
 
  private:
   using Real = std::conditional_t<std::is_same_v<Scalar, float>, float, double>;
@@ -95,7 +92,7 @@ class Levels {
   std::size_t shards_ = 1;
   double cell_size_ = 1;
   std::array<double, Dim> origin_{};
-  std::array<GridIndex, kLevels> homes_ = none();  // of the newest family, by level
+  std::array<GridIndex, kLevels> homes_ = none();  // by level
   mutable std::atomic<std::uint32_t> wanted_ = 0;  // levels that a box would have lived in, by bit
   std::vector<std::unique_ptr<GridType>> grids_;   // by index
   std::vector<double> widest_;                     // by index: widest box that the grid is meant for

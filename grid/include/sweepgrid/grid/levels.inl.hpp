@@ -12,6 +12,7 @@ namespace sweepgrid {
 template <class Scalar, int Dim>
 void Levels<Scalar, Dim>::start_family(double cell_size, const std::array<double, Dim>& origin,
                                        const CellOptions& cells, std::size_t shards) {
+  clear();
   cell_size_ = cell_size;
   origin_ = origin;
   cells_ = cells;
@@ -89,11 +90,9 @@ GridIndex Levels<Scalar, Dim>::home(double width) const {
 }
 
 template <class Scalar, int Dim>
-double Levels<Scalar, Dim>::drop_empty(bool homes_too) {
+double Levels<Scalar, Dim>::drop_empty() {
   std::erase_if(live_, [&](GridIndex index) {
     if (index == homes_[0] || grids_[index]->cell_count() > 0) return false;
-    const bool is_home = std::find(homes_.begin(), homes_.end(), index) != homes_.end();
-    if (is_home && !homes_too) return false;
     std::replace(homes_.begin(), homes_.end(), index, kNone);
     grids_[index].reset();
     return true;

@@ -20,9 +20,6 @@ enum class CellCall : std::uint32_t {
   kVisit,     ///< an object of another grid had a box here and has one now; either may miss the cell
   kVisitWas,  ///< of another grid, here at the start of the step only
   kVisitIs,   ///< of another grid, here at the end of the step only
-  // Heard last, and no news:
-  kAttach,  ///< a resident comes from another grid
-  kDetach,  ///< a resident goes to another grid
 };
 
 /// The calls of one step on their way to cells. Blocks of objects write, shards of a grid read; each [block][shard]

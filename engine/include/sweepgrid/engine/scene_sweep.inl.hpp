@@ -1,0 +1,411 @@
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <limits>
+#include <span>
+#include <type_traits>
+
+#include <sweepgrid/engine/scene_sweep.hpp>
+#include <sweepgrid/sap/ordered_box.hpp>
+#include <sweepgrid/sap/prefetch.hpp>
+
+namespace sweepgrid {
+
+namespace scene_sweep {
+
+/// Sweeps after which rows are fitted anew: soon after the first fit, which could not know how crowded the scene is.
+inline constexpr std::size_t kFirstFitSweeps = 2;
+inline constexpr std::size_t kFitSweeps = 128;
+/// Entries that a worker's cache holds with all that a part needs.
+inline constexpr std::size_t kPartEntries = 8192;
+
+}  // namespace scene_sweep
+
+// ---- fitting rows
+
+template <class Scalar, int Dim>
+void SceneSweep<Scalar, Dim>::fit() {
+  constexpr std::size_t kSample = Bins::Scene::kSample;
+  const auto with_values = [&](ObjectId object, auto&& use) {
+    const std::uint8_t state = objects_.state(object);
+    if (state == 0 || (state & Objects::kErased) != 0) return;
+    const BoxType& box = objects_.record(object).box;
+    std::array<Value, 2 * Dim> values;
+    for (int axis = 0; axis < Dim; ++axis) {
+      values[axis] = static_cast<Value>(box.min[axis]);
+      values[Dim + axis] = static_cast<Value>(box.max[axis]);
+    }
+    use(values);
+  };
+  std::array<std::array<Value, 2 * Dim>, kSample> sample;
+  std::size_t sampled = 0;
+  const ObjectId bound = objects_.bound();
+  const std::uint64_t looked_at = std::min<std::uint64_t>(bound, kSample);
+  for (std::uint64_t i = 0; i < looked_at; ++i) {
+    with_values(static_cast<ObjectId>(i * bound / looked_at), [&](const auto& box) { sample[sampled++] = box; });
+  }
+  const std::span<const std::array<Value, 2 * Dim>> found(sample);
+  typename Bins::Scene scene(found.first(sampled));
+  for (ObjectId object = 0; object < bound; ++object) {
+    with_values(object, [&](const auto& box) { scene.add(box.data()); });
+  }
+  rows_ = Bins::fit(scene, crowding_);
+  steps_left_ = fitted_objects_ == 0 ? scene_sweep::kFirstFitSweeps : scene_sweep::kFitSweeps;
+  fitted_objects_ = objects_.size();
+  usual_cost_ = 0;
+}
+
+// ---- bin: objects into rows, by block
+
+template <class Scalar, int Dim>
+void SceneSweep<Scalar, Dim>::plan_bin(std::size_t workers, std::vector<std::uint64_t>& costs) {
+  const std::size_t objects = objects_.size();
+  if (steps_left_ == 0 || objects > 2 * fitted_objects_ || 2 * objects < fitted_objects_) fit();
+  --steps_left_;
+  const std::size_t wanted = std::max(objects / scene_sweep::kPartEntries, workers == 1 ? 1 : 4 * workers);
+  part_shift_ = std::bit_width(std::max<std::size_t>(1, rows_.rows() / wanted)) - 1;
+  const std::size_t parts = ((rows_.rows() - 1) >> part_shift_) + 1;
+  const std::size_t granules = objects_.granules();
+  const std::size_t blocks = workers == 1 ? 1 : std::min<std::size_t>((granules + 3) / 4, 3 * workers);
+  bins_.restart();
+  for (std::size_t b = 0; b < blocks; ++b) {
+    Bin& bin = bins_.add();
+    bin.parts.resize(parts);
+    bin.restart();
+    bin.first_granule = static_cast<std::uint32_t>(b * granules / blocks);
+    bin.last_granule = static_cast<std::uint32_t>((b + 1) * granules / blocks);
+    costs.push_back(bin.last_granule - bin.first_granule);
+  }
+  sweeps_.restart();
+  scratch_.restart();
+  while (scratch_.size() < workers) scratch_.add();
+}
+
+/// Puts a block of objects into rows, as many at once as the kernel takes.
+template <class Scalar, int Dim>
+class SceneSweep<Scalar, Dim>::Binner {
+ public:
+  Binner(const Bins& rows, int part_shift, Bin& bin, Scratch& scratch)
+      : rows_(rows), part_shift_(part_shift), bin_(bin), batch_(scratch.batch) {}
+
+  // Sees to it that the record holds what the object was before the step and what it is after it.
+  void add(ObjectId object, std::uint8_t state, Record& record) {
+    const std::uint8_t queued = state & Objects::kQueued;
+    bool was = true;
+    bool is = true;
+    if (queued == Objects::kUpdated) [[likely]] {
+      ++bin_.counters.updates;
+    } else if (queued == 0) {
+      if (!Objects::same_bits(record.before, record.box)) record.before = record.box;
+    } else {
+      was = (queued & Objects::kInserted) == 0;
+      is = (queued & Objects::kErased) == 0;
+      if (!is) bin_.retired.items.push_back(object);
+      if (!was && !is) return;
+      ++(is ? bin_.counters.inserts : bin_.counters.erases);
+    }
+    batch_.objects[count_] = object;
+    if constexpr (kDirect) {
+      // Nothing else is to be read of the side that there is not.
+      if (!was) record.before.min[0] = kNone;
+      if (!is) record.box.min[0] = kNone;
+      batch_.boxes[count_++] = values(record);
+    } else {
+      Value* const both = batch_.copies + kValues * count_;
+      for (int axis = 0; axis < Dim; ++axis) {
+        both[axis] = static_cast<Value>(record.box.min[axis]);
+        both[Dim + axis] = static_cast<Value>(record.box.max[axis]);
+        both[kOld + axis] = static_cast<Value>(record.before.min[axis]);
+        both[kOld + Dim + axis] = static_cast<Value>(record.before.max[axis]);
+      }
+      if (!was) both[kOld] = kNone;
+      if (!is) both[0] = kNone;
+      batch_.boxes[count_++] = both;
+    }
+    if (count_ == Kernel::kPlaced) flush();
+  }
+
+  void flush() {
+    const std::size_t far =
+        Kernel::place(batch_.boxes, batch_.objects, count_, rows_.cut(), batch_.entries, batch_.far);
+    const auto& entries = batch_.entries;
+    auto* const parts = bin_.parts.data();
+    const std::uint32_t in_part = (1U << part_shift_) - 1;
+    const std::uint32_t bins = rows_.bins();
+    constexpr std::uint32_t kMark = kDirect ? 0 : sweep_tasks::marks::kCopied;
+    if (kDirect && bin_.parts.size() == 1) {  // nothing to be told apart
+      auto& items = parts[0].entries.items;
+      const std::size_t before = items.size();
+      items.resize(before + entries.count);
+      sweep_tasks::Entry* const to = items.data() + before;
+      for (std::size_t i = 0; i < entries.count; ++i) {
+        to[i] = {entries.row[i] * bins + entries.bin[i], entries.object[i], entries.reach[i]};
+      }
+    } else {
+      for (std::size_t i = 0; i < entries.count; ++i) {
+        auto& part = parts[entries.row[i] >> part_shift_];
+        part.entries.items.push_back(
+            {(entries.row[i] & in_part) * bins + entries.bin[i], entries.object[i], entries.reach[i] | kMark});
+        if constexpr (!kDirect) copy_into(part, batch_.boxes[place_of(entries.object[i])]);
+      }
+    }
+    for (std::size_t i = 0; i < far; ++i) put_far(batch_.objects[batch_.far[i]], batch_.boxes[batch_.far[i]]);
+    count_ = 0;
+  }
+
+ private:
+  using Kernel = RowSweep<Value, Dim>;
+  static constexpr Value kNone = std::numeric_limits<Value>::quiet_NaN();
+
+  // Among those that are placed at once, which stand in the order of ids.
+  [[nodiscard]] std::size_t place_of(ObjectId object) const {
+    return static_cast<std::size_t>(std::lower_bound(batch_.objects, batch_.objects + count_, object) - batch_.objects);
+  }
+  static void copy_into(sweep_tasks::Arrivals<Value>& part, const Value* both) {
+    part.copies.items.insert(part.copies.items.end(), both, both + kValues);
+  }
+
+  // An object whose boxes are far apart would be in all rows between them: they are members of their own.
+  void put_far(ObjectId object, const Value* both) {
+    const bool was = both[kOld] == both[kOld];  // not NaN
+    const bool is = both[0] == both[0];
+    if (!was || !is) return put(object, is ? both : both + kOld, is ? both : both + kOld, 0, both);
+    bool apart = false;
+    for (int axis = 0; axis < Dim; ++axis) {
+      apart = apart || both[axis] > both[kOld + Dim + axis] || both[kOld + axis] > both[Dim + axis];
+    }
+    if (!apart) return put(object, both, both + kOld, 0, both);
+    for (const bool born : {false, true}) {
+      std::array<Value, kValues> half;
+      std::copy_n(both, kValues, half.begin());
+      half[born ? kOld : 0] = kNone;
+      const Value* const side = half.data() + (born ? 0 : kOld);
+      put(object, side, side,
+          sweep_tasks::marks::kCopied | (born ? sweep_tasks::marks::kBorn : sweep_tasks::marks::kGone), half.data());
+    }
+  }
+
+  void put(ObjectId object, const Value* a, const Value* b, std::uint32_t marks, const Value* both) {
+    if constexpr (!kDirect) marks |= sweep_tasks::marks::kCopied;
+    const auto span = rows_.span(a, b);
+    const auto& cut = rows_.cut();
+    // Of each row axis.
+    std::array<std::uint32_t, 3> more{};
+    std::array<std::uint32_t, 3> stride{};
+    std::uint32_t first = 0;
+    for (int axis = 0, used = 0; axis < Dim; ++axis) {
+      if (axis == cut.along) continue;
+      more[used] = static_cast<std::uint32_t>(span.high[axis] - span.low[axis]);
+      stride[used] = cut.stride[axis];
+      first += static_cast<std::uint32_t>(span.low[axis]) * stride[used++];
+    }
+    const auto low = static_cast<std::uint32_t>(span.low[cut.along]);
+    const std::uint32_t reach = static_cast<std::uint32_t>(span.high[cut.along]) << row_marks::kBits | marks;
+    const std::uint32_t in_part = (1U << part_shift_) - 1;
+    constexpr std::uint32_t kFirst = row_marks::kFirstEarlier;
+    for (std::uint32_t z = 0; z <= more[2]; ++z) {
+      for (std::uint32_t y = 0; y <= more[1]; ++y) {
+        for (std::uint32_t x = 0; x <= more[0]; ++x) {
+          const std::uint32_t row = first + x * stride[0] + y * stride[1] + z * stride[2];
+          const std::uint32_t earlier = (x != 0 ? kFirst : 0) | (y != 0 ? 2 * kFirst : 0) | (z != 0 ? 4 * kFirst : 0);
+          auto& part = bin_.parts[row >> part_shift_];
+          part.entries.items.push_back({(row & in_part) * rows_.bins() + low, object, reach | earlier});
+          if ((marks & sweep_tasks::marks::kCopied) != 0) copy_into(part, both);
+        }
+      }
+    }
+  }
+
+  const Bins& rows_;
+  int part_shift_;
+  Bin& bin_;
+  typename Scratch::Batch& batch_;
+  std::uint32_t count_ = 0;
+};
+
+template <class Scalar, int Dim>
+void SceneSweep<Scalar, Dim>::bin(std::size_t block, std::size_t worker) {
+  Bin& bin = bins_[block];
+  Binner binner(rows_, part_shift_, bin, scratch_[worker]);
+  for (std::uint32_t granule = bin.first_granule; granule < bin.last_granule; ++granule) {
+    const ObjectId first = granule * Objects::kGranule;
+    const std::uint32_t count = std::min(objects_.bound() - first, Objects::kGranule);
+    // A granule is contiguous.
+    const std::uint8_t* const states = &objects_.state(first);
+    Record* const records = &objects_.record(first);
+    for (std::uint32_t i = 0; i < count; ++i) {
+      if (states[i] != 0) binner.add(first + i, states[i], records[i]);
+    }
+  }
+  binner.flush();
+  for (const auto& part : bin.parts) bin.counters.cell_ops += part.entries.items.size();
+  budget_.charge(bin.counters.cell_ops * kEntryBytes);
+}
+
+// ---- sweep: rows to events, by part
+
+template <class Scalar, int Dim>
+void SceneSweep<Scalar, Dim>::plan_sweep(std::vector<std::uint64_t>& costs) {
+  for (std::size_t part = 0; part < bins_[0].parts.size(); ++part) {
+    std::uint64_t entries = 0;
+    for (const Bin& bin : bins_) entries += bin.parts[part].entries.items.size();
+    sweeps_.add().restart();
+    costs.push_back(entries + 1);
+  }
+}
+
+// The members of a part by bin. Returns how many there are.
+template <class Scalar, int Dim>
+std::size_t SceneSweep<Scalar, Dim>::sort(std::size_t part, Scratch& scratch) const {
+  std::vector<std::uint32_t>& bins = scratch.bins.items;
+  bins.assign((std::size_t{rows_.bins()} << part_shift_) + 1, 0);
+  std::size_t total = 0;
+  for (const Bin& bin : bins_) {
+    for (const auto& entry : bin.parts[part].entries.items) ++bins[entry.bin + 1];
+    total += bin.parts[part].entries.items.size();
+  }
+  for (std::size_t i = 1; i < bins.size(); ++i) bins[i] += bins[i - 1];
+  scratch.members.items.resize(total + RowSweep<Value, Dim>::kPadding);
+  std::fill_n(scratch.members.items.begin() + static_cast<std::ptrdiff_t>(total), RowSweep<Value, Dim>::kPadding,
+              Member{kBoxOfNobody<Value>.data(), 0, 0});
+  Member* const members = scratch.members.items.data();
+  for (const Bin& bin : bins_) {
+    const Value* copy = bin.parts[part].copies.items.data();
+    for (const auto& entry : bin.parts[part].entries.items) {
+      Member& member = members[bins[entry.bin]++];
+      member.object = entry.object;
+      member.reach = entry.reach;
+      if (!kDirect || (entry.reach & sweep_tasks::marks::kCopied) != 0) [[unlikely]] {
+        member.box = copy;
+        copy += kValues;
+      } else {
+        member.box = values(objects_.record(entry.object));
+      }
+    }
+  }
+  return total;
+}
+
+/// Turns what a row finds into events.
+template <class Scalar, int Dim>
+class SceneSweep<Scalar, Dim>::Sink final : public SweepSink {
+ public:
+  Sink(const SceneSweep& sweep, std::span<const Member> members, Sweep& found)
+      : sweep_(sweep), members_(members), found_(found) {}
+
+  void take(std::span<const SweepHit> hits) override {
+    const std::size_t before = found_.begins.items.size() + found_.ends.items.size();
+    for (const SweepHit& hit : hits) {
+      const Member& a = members_[hit.member];
+      for (unsigned lanes = hit.changed; lanes != 0; lanes &= lanes - 1) {
+        const int lane = std::countr_zero(lanes);
+        const Member& b = members_[hit.first + static_cast<unsigned>(lane)];
+        if ((a.reach & b.reach & row_marks::kEarlier) != 0) continue;  // another row reports it
+        bool begins = (hit.overlap >> lane & 1) != 0;
+        const std::uint32_t halves = (a.reach | b.reach) & (sweep_tasks::marks::kGone | sweep_tasks::marks::kBorn);
+        if (kSweepsRounded<Scalar> || halves != 0) [[unlikely]] {
+          const auto [was, is] = sweep_.overlaps(a.object, b.object);
+          if (was == is || (halves & (is ? sweep_tasks::marks::kGone : sweep_tasks::marks::kBorn)) != 0) continue;
+          begins = is;
+        }
+        (begins ? found_.begins : found_.ends).items.emplace_back(a.object, b.object);
+      }
+    }
+    const std::size_t after = found_.begins.items.size() + found_.ends.items.size();
+    sweep_.budget_.charge((after - before) * sweep_.event_bytes_);
+  }
+
+ private:
+  const SceneSweep& sweep_;
+  std::span<const Member> members_;
+  Sweep& found_;
+};
+
+// Before and after the step, by the exact boxes.
+template <class Scalar, int Dim>
+auto SceneSweep<Scalar, Dim>::overlaps(ObjectId a, ObjectId b) const -> WasIs {
+  using Ordered = OrderedBox<Scalar, Dim>;
+  const Record& first = objects_.record(a);
+  const Record& second = objects_.record(b);
+  const std::uint8_t states = objects_.state(a) | objects_.state(b);
+  return {(states & Objects::kInserted) == 0 && Ordered(first.before).overlaps(Ordered(second.before)),
+          (states & Objects::kErased) == 0 && Ordered(first.box).overlaps(Ordered(second.box))};
+}
+
+template <class Scalar, int Dim>
+void SceneSweep<Scalar, Dim>::sweep(std::size_t part, std::size_t worker) {
+  Scratch& scratch = scratch_[worker];
+  Sweep& found = sweeps_[part];
+  const std::size_t total = sort(part, scratch);
+  const std::span<const Member> members(scratch.members.items.data(), total);
+  const std::uint32_t* bins = scratch.bins.items.data();
+  const std::uint32_t in_row = rows_.bins();
+  std::uint32_t first = 0;
+  for (std::size_t row = 0; first < total; ++row, bins += in_row) {
+    const std::uint32_t end = bins[in_row - 1];
+    const std::size_t ahead = std::min<std::size_t>(total, std::size_t{end} + (end - first) + 8);
+    for (std::size_t next = end; next < ahead; ++next) prefetch(members[next].box);
+    if (end - first > 1) {
+      Sink sink(*this, members.subspan(first, end - first), found);
+      found.meetings += RowSweep<Value, Dim>::sweep(&members[first], end - first, bins, first, kSweepsRounded<Scalar>,
+                                                    scratch.sweep, sink);
+    }
+    first = end;
+  }
+}
+
+// ---- after the stages
+
+template <class Scalar, int Dim>
+void SceneSweep<Scalar, Dim>::reserve() {
+  std::size_t retired = 0;
+  for (const Bin& bin : bins_) retired += bin.retired.items.size();
+  objects_.reserve_free(retired);
+}
+
+template <class Scalar, int Dim>
+StepCounters SceneSweep<Scalar, Dim>::commit() noexcept {
+  StepCounters counters;
+  counters.cells_drained = rows_.rows();
+  for (Bin& bin : bins_) counters += bin.counters;
+  std::uint64_t meetings = 0;
+  for (Sweep& sweep : sweeps_) meetings += sweep.meetings;
+  counters.cells.box_tests = 2 * meetings;
+  for (std::uint32_t granule = 0; granule < objects_.granules(); ++granule) objects_.settle(granule);
+  for (Bin& bin : bins_) {
+    for (const ObjectId object : bin.retired.items) objects_.retire(object);
+    objects_.free_ids(bin.retired.items);
+    bin.note_step();
+    bin.restart();  // lest a step that fails frees ids again
+  }
+  objects_.nothing_queued();
+  crowding_ = rows_.crowding(static_cast<double>(counters.cell_ops), static_cast<double>(meetings));
+  // The scene has changed since it was fitted.
+  const double cost =
+      Bins::kEntryCost * static_cast<double>(counters.cell_ops) + Bins::kMeetingCost * static_cast<double>(meetings);
+  if (usual_cost_ == 0) usual_cost_ = cost;
+  if (cost > 1.5 * usual_cost_) steps_left_ = 0;
+  bins_.finish();
+  for (Sweep& sweep : sweeps_) sweep.note_step();
+  sweeps_.finish();
+  for (Scratch& scratch : scratch_) scratch.note_step();
+  scratch_.finish();
+  return counters;
+}
+
+template <class Scalar, int Dim>
+void SceneSweep<Scalar, Dim>::cancel() noexcept {
+  for (Bin& bin : bins_) bin.restart();
+  bins_ = {};
+  sweeps_ = {};
+}
+
+template <class Scalar, int Dim>
+void SceneSweep<Scalar, Dim>::pass(std::size_t steps) {
+  bins_.pass(steps);
+  sweeps_.pass(steps);
+  scratch_.pass(steps);
+}
+
+}  // namespace sweepgrid

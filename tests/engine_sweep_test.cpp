@@ -1,0 +1,264 @@
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <sweepgrid/engine/engine.hpp>
+#include <sweepgrid/engine/keyed_engine.inl.hpp>
+
+#include "engine_client.hpp"
+#include "engine_oracle.hpp"
+
+// Steps that sweep all objects from scratch: when they are taken, and what only they could get wrong.
+namespace sweepgrid {
+
+// Numbers of axes and scalars that are not compiled ahead.
+template class KeyedEngine<float, 1>;
+template class KeyedEngine<double, 4>;
+template class KeyedEngine<std::int64_t, 2>;
+
+}  // namespace sweepgrid
+
+namespace sweepgrid::engine_sweep_test {
+namespace {
+
+using oracle::EngineModel;
+using oracle::Random;
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+Config config_of(StepMethod method, int threads = 1) {
+  Config config;
+  config.step_method = method;
+  config.threads = threads;
+  return config;
+}
+
+/// An engine beside the model.
+template <class Scalar, int Dim>
+struct Pairing {
+  using BoxType = Box<Scalar, Dim>;
+
+  explicit Pairing(const Config& config) : engine(config) {}
+
+  void put(std::uint64_t key, const BoxType& box) {
+    if (engine.contains(key)) {
+      engine.update(key, box);
+      model.update(key, box);
+    } else {
+      engine.insert(key, box);
+      model.insert(key, box);
+    }
+  }
+  void erase(std::uint64_t key) {
+    engine.erase(key);
+    model.erase(key);
+  }
+  // Returns what is wrong.
+  std::string step() {
+    events = &engine.step();
+    const std::string wrong = oracle::difference(model.step(), *events);
+    return wrong.empty() ? oracle::compare(engine, model) : wrong;
+  }
+
+  Engine<Scalar, Dim> engine;
+  EngineModel<Scalar, Dim> model;
+  const Events<std::uint64_t>* events = nullptr;  // of the latest step
+};
+
+Box<float, 3> cube(float x, float y, float z, float width = 1) {
+  return {{x, y, z}, {x + width, y + width, z + width}};
+}
+
+class ManyCubes : public Pairing<float, 3> {
+ public:
+  ManyCubes(const Config& config, int count) : Pairing(config), count_(count) {}
+  void move(int percent) {
+    for (int key = 0; key < count_; ++key) {
+      if (!random_.percent(percent)) continue;
+      const auto at = [&] { return static_cast<float>(random_.below(1000)) / 50; };
+      put(static_cast<std::uint64_t>(key), cube(at(), at(), at()));
+    }
+  }
+
+ private:
+  int count_;
+  Random random_{5};
+};
+
+TEST(Sweep, IsTakenWhileMuchMovesAndCellsWhileLittleDoes) {
+  for (const int threads : {1, 3}) {
+    ManyCubes scene(config_of(StepMethod::kAuto, threads), 500);
+    for (int phase = 0; phase < 4; ++phase) {
+      const bool much = phase % 2 == 0;
+      int swept = 0;
+      for (int step = 0; step < 8; ++step) {
+        scene.move(much ? 100 : 3);
+        ASSERT_EQ(scene.step(), "") << "phase " << phase << ", step " << step;
+        const Stats stats = scene.engine.stats();
+        swept += static_cast<int>(stats.step.sweeps);
+        EXPECT_EQ(stats.cells == 0, stats.step.sweeps == 1) << "cells are kept by steps that use them alone";
+        EXPECT_EQ(stats.grids == 0, stats.step.sweeps == 1);
+      }
+      EXPECT_GE(much ? swept : 8 - swept, 4) << "phase " << phase;
+      EXPECT_EQ(scene.engine.stats().step.sweeps, much ? 1u : 0u) << "phase " << phase;
+    }
+  }
+}
+
+TEST(Sweep, MethodsMayBeForced) {
+  for (const StepMethod method : {StepMethod::kCells, StepMethod::kSweep}) {
+    ManyCubes scene(config_of(method), 100);
+    for (int step = 0; step < 12; ++step) {
+      scene.move(step < 6 ? 100 : 2);
+      ASSERT_EQ(scene.step(), "");
+      if (step == 6) {
+        ASSERT_EQ(scene.step(), "") << "an idle step";
+      }
+    }
+    EXPECT_EQ(scene.engine.stats().total.sweeps, method == StepMethod::kSweep ? 12u : 0u);
+  }
+}
+
+TEST(Sweep, IsNotTakenWhereItCannotBe) {
+  Config config = config_of(StepMethod::kSweep);
+  config.reduction = Reduction::kWitnessCounts;
+  ManyCubes counted(config, 50);
+  config.reduction = Reduction::kSingleReporter;
+  config.cell.kind = CellKind::kBatch;
+  ManyCubes batch(config, 50);
+  for (ManyCubes* scene : {&counted, &batch}) {
+    for (int step = 0; step < 3; ++step) {
+      scene->move(100);
+      ASSERT_EQ(scene->step(), "");
+    }
+    EXPECT_EQ(scene->engine.stats().total.sweeps, 0u);
+    EXPECT_GT(scene->engine.stats().cells, 0u);
+  }
+}
+
+// The boxes before a jump and after it are swept apart, so that each finds half of what happens.
+TEST(Sweep, PairsThatJumpTogetherOrMeetOnBothSidesAreSilent) {
+  Pairing<float, 3> scene(config_of(StepMethod::kSweep));
+  Random random(3);
+  for (std::uint64_t key = 100; key < 600; ++key) {  // so that rows are narrow
+    const auto at = [&] { return static_cast<float>(random.below(1000)) / 10; };
+    scene.put(key, cube(at(), at(), at()));
+  }
+  scene.put(1, cube(1, 1, 1));
+  scene.put(2, cube(1.5, 1.5, 1.5));
+  scene.put(3, cube(-5, -5, -5, 120));  // over everything
+  scene.put(4, {{-kInfinity, 2, -kInfinity}, {kInfinity, 2, kInfinity}});
+  ASSERT_EQ(scene.step(), "");
+  for (const float to : {90.0F, 3.0F, 70.0F}) {
+    scene.put(1, cube(to, to, 1));
+    scene.put(2, cube(to + 0.5F, to, 1));
+    ASSERT_EQ(scene.step(), "");
+    for (const auto& [a, b] : scene.events->begins) EXPECT_FALSE(a < 5 && b < 4) << a << " and " << b;
+    for (const auto& [a, b] : scene.events->ends) EXPECT_FALSE(a < 5 && b < 4) << a << " and " << b;
+  }
+  scene.put(1, cube(1, 1, 90));  // alone
+  ASSERT_EQ(scene.step(), "");
+  scene.put(2, cube(1, 1, 90));
+  scene.erase(1);
+  ASSERT_EQ(scene.step(), "");
+}
+
+// An object without a box before the step, or after it, meets nobody there, not even who is everywhere.
+TEST(Sweep, WhoIsEverywhereBeginsWithAllAndEndsWithAll) {
+  const auto everywhere = [](auto scalar) {
+    using Scalar = decltype(scalar);
+    using Limits = std::numeric_limits<Scalar>;
+    const Scalar least = Limits::has_infinity ? -Limits::infinity() : Limits::lowest();
+    const Scalar most = Limits::has_infinity ? Limits::infinity() : Limits::max();
+    Pairing<Scalar, 2> scene(config_of(StepMethod::kSweep));
+    for (std::uint64_t key = 0; key < 40; ++key) {
+      scene.put(key, {{least, least}, {most, most}});
+      ASSERT_EQ(scene.step(), "");
+      EXPECT_EQ(scene.events->begins.size(), key);
+    }
+    for (std::uint64_t key = 0; key < 40; ++key) {
+      scene.erase(key);
+      scene.put(key + 100, {{least, least}, {least, least}});
+      ASSERT_EQ(scene.step(), "");
+      EXPECT_EQ(scene.events->ends.size(), 39u);
+    }
+  };
+  everywhere(float());
+  everywhere(double());
+  everywhere(std::int16_t());
+  everywhere(std::int32_t());
+  everywhere(std::int64_t());
+}
+
+template <class Scalar, int Dim>
+void play_line(Scalar scale) {
+  for (const int threads : {1, 2}) {
+    Pairing<Scalar, Dim> scene(config_of(StepMethod::kSweep, threads));
+    Random random(9);
+    for (int step = 0; step < 12; ++step) {
+      for (std::uint64_t key = 0; key < 150; ++key) {
+        if (step > 0 && random.percent(30)) continue;
+        if (scene.engine.contains(key) && random.percent(10)) {
+          scene.erase(key);
+          continue;
+        }
+        Box<Scalar, Dim> box;
+        for (int axis = 0; axis < Dim; ++axis) {
+          box.min[axis] = static_cast<Scalar>(random.below(60)) * scale;
+          box.max[axis] = box.min[axis] + static_cast<Scalar>(random.below(Dim == 1 ? 2 : 20)) * scale;
+        }
+        scene.put(key, box);
+      }
+      ASSERT_EQ(scene.step(), "") << "step " << step;
+    }
+    EXPECT_EQ(scene.engine.stats().total.sweeps, 12u);
+  }
+}
+
+TEST(Sweep, WorksOnOneAxisAndOnFour) {
+  play_line<float, 1>(0.5F);
+  play_line<double, 4>(0.5);
+}
+
+// To double, neighbouring 64-bit integers are one and the same number.
+TEST(Sweep, IsExactForIntegersThatItRounds) {
+  play_line<std::int64_t, 2>(1);
+  Pairing<std::int64_t, 2> scene(config_of(StepMethod::kSweep));
+  constexpr std::int64_t kBig = (std::int64_t{1} << 60) + 1;
+  for (std::int64_t i = 0; i < 100; ++i) {
+    const std::int64_t x = kBig + 3 * (i % 10);
+    const std::int64_t y = kBig + 3 * (i / 10);
+    scene.put(static_cast<std::uint64_t>(i), {{x, y}, {x + 2, y + 2}});  // a gap of one between neighbours
+  }
+  ASSERT_EQ(scene.step(), "");
+  EXPECT_TRUE(scene.engine.pairs().empty());
+  for (std::int64_t i = 0; i < 100; i += 2) {
+    const std::int64_t x = kBig + 3 * (i % 10) + 1;
+    const std::int64_t y = kBig + 3 * (i / 10);
+    scene.put(static_cast<std::uint64_t>(i), {{x, y}, {x + 2, y + 2}});
+  }
+  ASSERT_EQ(scene.step(), "");
+  EXPECT_FALSE(scene.events->begins.empty());
+}
+
+// Where everything ties, is thin, or lies far outside of where rows were fitted.
+TEST(Sweep, IsExactWhereRowsFitBadly) {
+  Pairing<float, 3> scene(config_of(StepMethod::kSweep, 2));
+  Random random(4);
+  for (int step = 0; step < 40; ++step) {
+    const auto far = static_cast<float>(step * step * step) * 100;
+    for (std::uint64_t key = 0; key < 200; ++key) {
+      if (step > 0 && random.percent(20)) continue;
+      const auto tick = [&] { return static_cast<float>(random.below(4)); };
+      const float shift = key % 7 == 0 ? far : key % 11 == 0 ? -1e30F : 0;
+      scene.put(key, cube(tick() + shift, tick(), key % 3 == 0 ? -0.0F : 0.0F, key % 5 == 0 ? 0 : tick()));
+    }
+    ASSERT_EQ(scene.step(), "") << "step " << step;
+  }
+}
+
+}  // namespace
+}  // namespace sweepgrid::engine_sweep_test
