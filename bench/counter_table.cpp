@@ -16,6 +16,7 @@ constexpr Counter kCounters[] = {
     {"updates", &StepCounters::updates},
     {"erases", &StepCounters::erases},
     {"migrations", &StepCounters::migrations},
+    {"sweeps", &StepCounters::sweeps},
     {"cell_ops", &StepCounters::cell_ops},
     {"cells_drained", &StepCounters::cells_drained},
     {"regrids", &StepCounters::regrids},

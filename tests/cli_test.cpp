@@ -282,7 +282,7 @@ TEST_F(Program, GivesTheSameEventsForAllSettings) {
 
 TEST_F(Program, VerifiesARecordingAndTellsAllInJson) {
   const std::string recording = std::string(SWEEPGRID_RECORDINGS) + "/lammps_pour_2200.lammpstrj.xz";
-  const Result result = run("run --verify --steps 10 --scalar double --json - '" + recording + "'");
+  const Result result = run("run --verify --steps 10 --scalar double --step-method cells --json - '" + recording + "'");
   EXPECT_EQ(result.status, 0);
   EXPECT_NE(result.err.find("verified: 10 steps, "), std::string::npos) << result.err;
   EXPECT_NE(result.err.find("0 missing, 0 extra, 0 duplicate, 0 spurious"), std::string::npos);
@@ -291,6 +291,7 @@ TEST_F(Program, VerifiesARecordingAndTellsAllInJson) {
   EXPECT_EQ(json["schema_version"], 2);
   EXPECT_EQ(json["settings"]["scalar"], "double");
   EXPECT_EQ(json["settings"]["reduction"], "reporter");
+  EXPECT_EQ(json["settings"]["step_method"], "cells");
   EXPECT_EQ(json["settings"]["cell_population"], "auto");
   const auto& scene = json["scenes"].at(0);
   EXPECT_EQ(scene["objects"]["first"], 2150);

@@ -105,7 +105,7 @@ TEST(ScalingRun, RecordsTheWorkAsItIsCutForSoManyWorkers) {
   EXPECT_EQ(step.front().name, "erase");
   EXPECT_EQ(step.back().name, "finish");
   EXPECT_GT(tasks("update"), 1U);
-  EXPECT_GT(tasks("drain"), 64U);
+  EXPECT_GT(tasks("sweep"), 64U);
   for (std::size_t s = 1; s < step.size(); ++s)
     EXPECT_EQ(step[s].after, std::vector<std::uint32_t>{static_cast<std::uint32_t>(s - 1)});
 

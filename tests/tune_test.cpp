@@ -411,7 +411,7 @@ TEST(RoundPlayer, CountsTheErrorsOfRealEngines) {
   const Trial exact = trial_of({{0, 1, 2}, Door::kDouble, {}, {}});
   EXPECT_GT(exact.true_pairs, 0U);
   EXPECT_EQ(exact.missed_pairs + exact.extra_pairs, 0U);
-  EXPECT_EQ(exact.grids, 1U) << "a uniform scene has one level";
+  EXPECT_LE(exact.grids, 1U) << "a uniform scene has one level, and none where steps sweep";
   for (const Candidate& candidate :
        {Candidate{{0, 1}, Door::kFloatOutward, {}, {}},
         Candidate{{0, 1, 2}, Door::kInt16, EnvelopeOptions{.margin = 0.4}, {CellKind::kBatch, 8}},

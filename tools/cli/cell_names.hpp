@@ -19,6 +19,8 @@ template <class Enum>
 
 /// The ways from deltas to events.
 [[nodiscard]] inline std::map<std::string, Reduction> reductions_by_name() { return by_name<Reduction>(); }
+[[nodiscard]] inline std::map<std::string, StepMethod> step_methods_by_name() { return by_name<StepMethod>(); }
+[[nodiscard]] inline std::string step_method_name(StepMethod method) { return json_members::name_of(method); }
 [[nodiscard]] inline std::string reduction_name(Reduction reduction) { return json_members::name_of(reduction); }
 
 }  // namespace sweepgrid

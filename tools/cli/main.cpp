@@ -79,6 +79,9 @@ void add_setup_options(CLI::App& run, RunOptions& options) {
   add_choice(
       run, "--reduction", reductions_by_name(), [&options](Reduction reduction) { options.reduction = reduction; },
       "How deltas become events: reporter (default; one cell reports each) or counts (of witnesses)");
+  add_choice(
+      run, "--step-method", step_methods_by_name(), [&options](StepMethod method) { options.step_method = method; },
+      "How steps find what changed: auto (default; what costs less), cells or sweep (of all objects)");
 }
 
 CLI::App* add_run(CLI::App& app, RunOptions& options) {
@@ -91,8 +94,8 @@ CLI::App* add_run(CLI::App& app, RunOptions& options) {
   CLI::Option* config =
       add_file(*run, "--config", options.config_path, "Take the setup from FILE, such as `sweepgrid tune` writes it");
   // What the file tells is not to be told twice; but --threads wins over it.
-  for (const char* told :
-       {"--scalar", "--cell", "--cell-size", "--cell-population", "--segment-capacity", "--reduction"}) {
+  for (const char* told : {"--scalar", "--cell", "--cell-size", "--cell-population", "--segment-capacity",
+                           "--reduction", "--step-method"}) {
     config->excludes(run->get_option(told));
   }
   add_file(*run, "--events", options.events_path, kEventsHelp);

@@ -11,6 +11,7 @@ EngineSetup setup_of(const RunOptions& options) {
   setup.config.cell_size = options.cell_size;
   setup.config.cell_population = options.cell_population;
   if (options.reduction) setup.config.reduction = *options.reduction;
+  if (options.step_method) setup.config.step_method = *options.step_method;
   return setup;
 }
 

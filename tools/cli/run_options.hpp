@@ -27,6 +27,7 @@ struct RunOptions {
   std::optional<int> cell_population;
   std::optional<int> segment_capacity;
   std::optional<Reduction> reduction;
+  std::optional<StepMethod> step_method;
   ScalarKind scalar = ScalarKind::kFloat;
   std::optional<std::uint64_t> steps;  ///< at most so many after the start
   std::string events_path;             ///< empty: none

@@ -99,6 +99,10 @@ Reason grid(const SceneFacts& facts, const Contender& best) {
       facts.least_edge > 0 ? facts.most_edge / facts.least_edge : std::numeric_limits<double>::infinity();
   const std::string sizes = fmt::format("the longest edges of boxes are {:.4g} to {:.4g} (1 to {:.4g})",
                                         facts.least_edge, facts.most_edge, ratio);
+  if (best.trial.grids == 0) {
+    return {"grid", "none",
+            fmt::format("{}; so much moves that the engine sweeps all objects and keeps no cells", sizes)};
+  }
   const bool uniform = best.trial.grids == 1;
   return {"grid", uniform ? "one level" : fmt::format("{} levels", best.trial.grids),
           fmt::format("{}; the engine made {} of cells, the finest {:.4g} wide in its units, by itself", sizes,
