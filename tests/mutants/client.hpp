@@ -37,7 +37,10 @@ class Client {
   using BoxType = Box<float, 2>;
 
   void set(std::uint64_t key, const BoxType& box) { boxes_.insert_or_assign(key, box); }
-  void erase(std::uint64_t key) { boxes_.erase(key); }
+  void erase(std::uint64_t key) {
+    boxes_.erase(key);
+    erased_.insert(key);
+  }
 
   /// The name of a broken invariant and what broke it; empty if all is well. "oracle": no event tells of a change.
   std::string hear(const Events<std::uint64_t>& events) {
@@ -51,8 +54,13 @@ class Client {
       if (known_.erase(key_pair(pair)) == 0) return "E2: an end without a begin: " + text(key_pair(pair));
     }
     for (const auto& pair : events.begins) {
+      const bool ended = std::binary_search(events.ends.begin(), events.ends.end(), pair, less);
+      if (ended && !erased_.contains(pair.first) && !erased_.contains(pair.second)) {
+        return "E3: ended and begun at once: " + text(key_pair(pair));
+      }
       if (!known_.insert(key_pair(pair)).second) return "E2: begun twice: " + text(key_pair(pair));
     }
+    erased_.clear();
     return truth() == known_ ? "" : "oracle: the events do not lead to the overlaps of the boxes";
   }
 
@@ -79,6 +87,7 @@ class Client {
 
   std::map<std::uint64_t, BoxType> boxes_;
   std::set<KeyPair> known_;
+  std::set<std::uint64_t> erased_;  // since the latest step; their keys may have been taken over
 };
 
 inline std::string text_of(const std::exception& error) {

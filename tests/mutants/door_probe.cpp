@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <exception>
 #include <functional>
+#include <initializer_list>
 #include <iostream>
 #include <limits>
 #include <map>
@@ -54,8 +55,10 @@ std::optional<std::string> refusal(const std::function<void()>& call) {
 /// An engine of many workers that is called for many objects at once, and one of one worker that is called for each.
 class Twins {
  public:
-  explicit Twins(std::uint64_t seed)
-      : random_(seed), bulk_(config(std::make_shared<Backwards>())), single_(config(make_serial_executor())) {}
+  Twins(std::uint64_t seed, StepMethod method)
+      : random_(seed),
+        bulk_(config(std::make_shared<Backwards>(), method)),
+        single_(config(make_serial_executor(), method)) {}
 
   void insert(std::size_t count) {
     std::vector<Key> keys;
@@ -157,9 +160,10 @@ class Twins {
     Box2 box;
   };
 
-  static Config config(std::shared_ptr<Executor> executor) {
+  static Config config(std::shared_ptr<Executor> executor, StepMethod method) {
     Config config;
     config.executor = std::move(executor);
+    config.step_method = method;
     config.cell_size = 4;
     return config;
   }
@@ -230,10 +234,9 @@ class Twins {
   Key next_key_ = 0;
 };
 
-void play() {
-  Twins twins(1);
-  // Enough for every way of sharing out the work, then few, and again.
-  for (const std::size_t most : {std::size_t{300}, std::size_t{20'000}}) {
+void play(StepMethod method, std::initializer_list<std::size_t> sizes) {
+  Twins twins(1, method);
+  for (const std::size_t most : sizes) {
     twins.insert(most);
     twins.step();
     twins.update(most, false);
@@ -259,7 +262,9 @@ void play() {
 
 int main() {
   try {
-    sweepgrid::play();
+    // Enough for every way of sharing out the work, then few, and again.
+    sweepgrid::play(sweepgrid::StepMethod::kCells, {300, 20'000});
+    sweepgrid::play(sweepgrid::StepMethod::kSweep, {300});
   } catch (const sweepgrid::Finding& finding) {
     std::cout << finding.what() << '\n';
     return 1;

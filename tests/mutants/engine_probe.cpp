@@ -1,4 +1,4 @@
-// A small oracle test of the engine, quick to compile: `run` builds it anew for every planted bug.
+// A small oracle test of steps that go through cells, quick to compile: `run` builds it anew for every planted bug.
 // Exits with 1 and prints the name of each broken invariant when it notices something.
 
 #include <cstddef>
@@ -10,67 +10,12 @@
 #include <string>
 #include <vector>
 
-#include "client.hpp"
 #include "op_script.hpp"
+#include "play.hpp"
 #include "scene_script.hpp"
 
 namespace sweepgrid {
 namespace {
-
-using TestEngine = Engine<float, 2>;
-using Ops = oracle::EngineOps<float, 2>;
-
-void queue(TestEngine& engine, Client& client, const Ops& ops) {
-  for (const auto& op : ops) {
-    if (op.kind == OpKind::kErase) {
-      engine.erase(op.key);
-      client.erase(op.key);
-      continue;
-    }
-    if (op.kind == OpKind::kInsert) {
-      engine.insert(op.key, op.box);
-    } else {
-      engine.update(op.key, op.box);
-    }
-    client.set(op.key, op.box);
-  }
-}
-
-/// Steps and says what is wrong, if anything: what the client finds and what validate() does. One names the invariant,
-/// the other sees from outside that events are wrong.
-std::vector<std::string> step(TestEngine& engine, Client& client, const Ops& ops) {
-  std::vector<std::string> findings;
-  try {
-    queue(engine, client, ops);
-    const std::string finding = client.hear(engine.step());
-    if (!finding.empty()) findings.push_back(finding);
-  } catch (const std::exception& error) {
-    return {text_of(error)};  // an engine that has thrown can but be destroyed
-  }
-  try {
-    engine.validate();
-  } catch (const std::exception& error) {
-    findings.push_back(text_of(error));
-  }
-  return findings;
-}
-
-int report(const char* scene, int step, const std::vector<std::string>& findings) {
-  std::cout << "scene " << scene << ", step " << step << '\n';
-  for (const std::string& finding : findings) std::cout << finding << '\n';
-  return 1;
-}
-
-template <class Script>
-int probe(const Config& config, const char* scene, Script script, int steps) {
-  TestEngine engine(config);
-  Client client;
-  for (int number = 0; number < steps; ++number) {
-    const auto findings = step(engine, client, script());
-    if (!findings.empty()) return report(scene, number, findings);
-  }
-  return 0;
-}
 
 int probe_cells(const Config& config, const oracle::Regime& regime) {
   oracle::OpScript<float, 2> script(regime, 1);
@@ -82,14 +27,9 @@ int probe_cells(const Config& config, const oracle::Regime& regime) {
   return probe(config, regime.name, next, regime.drains);
 }
 
-int probe_scene(const Config& config, const oracle::SceneRegime& regime) {
-  oracle::SceneScript<float, 2> script(regime, 1);
-  return probe(
-      config, regime.name, [&] { return script.next(); }, regime.steps);
-}
-
 Config config_of(CellKind kind, Reduction reduction, double cell_size) {
   Config config;
+  config.step_method = StepMethod::kCells;  // small scenes would be swept
   if (kind == CellKind::kBatch) {
     config.executor = std::make_shared<Backwards>();
   } else {
@@ -163,41 +103,6 @@ int probe_following(Config config) {
     ops.clear();
     put(OpKind::kUpdate, 0, number < 16 ? kMany - 13 : kFew, 12);
     if (play(number, ops, number == 25 ? second_size / 1.25 : 0) != 0) return 1;
-  }
-  return 0;
-}
-
-/// Steps are refused now and then, some of them several times.
-int probe_refusals(const Config& config, const oracle::SceneRegime& regime) {
-  TestEngine engine(config);
-  Client client;
-  oracle::SceneScript<float, 2> script(regime, 1);
-  oracle::Random random(1);
-  std::size_t pairs = 0;
-  for (int number = 0; number < regime.steps; ++number) {
-    try {
-      queue(engine, client, script.next());
-      const int tries = random.below(3);
-      for (int i = 0; i < tries; ++i) {
-        engine.set_step_bytes(std::uint64_t{1} << random.below(12));
-        const auto& events = engine.step();
-        std::string finding;
-        if (engine.status() == StepStatus::kDone) {
-          finding = client.hear(events);
-          pairs = engine.pairs().size();
-        } else if (!events.begins.empty() || !events.ends.empty() || engine.pairs().size() != pairs) {
-          finding = "refused: a step that was refused has left something behind";
-        }
-        if (!finding.empty()) return report(regime.name, number, {finding});
-      }
-    } catch (const std::exception& error) {
-      return report(regime.name, number, {text_of(error)});
-    }
-    engine.set_step_bytes(std::nullopt);
-    if (number % 2 == 0) continue;
-    const auto findings = step(engine, client, {});
-    if (!findings.empty()) return report(regime.name, number, findings);
-    pairs = engine.pairs().size();
   }
   return 0;
 }
