@@ -87,10 +87,11 @@ struct SweepHit {
 /// Takes hits as a sweep finds them, many at a time.
 class SweepSink {
  public:
+  SweepSink() = default;
+  virtual ~SweepSink() = default;
+  SweepSink(const SweepSink&) = delete;
+  SweepSink& operator=(const SweepSink&) = delete;
   virtual void take(std::span<const SweepHit> hits) = 0;
-
- protected:
-  ~SweepSink() = default;
 };
 
 /// Memory that sweeps use one after another. Not thread-safe: one for each worker.
