@@ -244,6 +244,37 @@ TEST(Sweep, IsExactForIntegersThatItRounds) {
   EXPECT_FALSE(scene.events->begins.empty());
 }
 
+// Rows that were fitted to small boxes would hold each of the large ones a thousand times.
+TEST(Sweep, BoxesThatGrowAllAtOnceGetOtherRowsInTheSameStep) {
+  for (const int threads : {1, 3}) {
+    Engine<float, 3> engine(config_of(StepMethod::kSweep, threads));
+    Random random(2);
+    std::vector<std::array<float, 3>> places;
+    for (int key = 0; key < 20'000; ++key) {
+      const auto at = [&] { return static_cast<float>(random.below(10'000)) / 100; };
+      places.push_back({at(), at(), at()});
+    }
+    for (const float width : {0.5F, 0.6F, 0.5F}) {
+      for (std::uint64_t key = 0; key < places.size(); ++key) {
+        const auto& [x, y, z] = places[key];
+        const Box<float, 3> box = cube(x, y, z, width);
+        width == 0.5F && !engine.contains(key) ? static_cast<void>(engine.insert(key, box)) : engine.update(key, box);
+      }
+      engine.step();
+    }
+    const auto rows = engine.stats().step.cells_drained;
+    EXPECT_GT(rows, 20u);
+    for (std::uint64_t key = 0; key < places.size(); ++key) {  // a thin slab each, beside each other
+      const float x = static_cast<float>(key) * 0.005F;
+      engine.update(key, Box<float, 3>({x, -1000, -1000}, {x + 0.002F, 1000, 1000}));
+    }
+    engine.step();
+    EXPECT_LT(engine.stats().step.cell_ops, 60'000u);
+    EXPECT_TRUE(engine.pairs().empty());
+    engine.validate();
+  }
+}
+
 // Where everything ties, is thin, or lies far outside of where rows were fitted.
 TEST(Sweep, IsExactWhereRowsFitBadly) {
   Pairing<float, 3> scene(config_of(StepMethod::kSweep, 2));

@@ -42,7 +42,7 @@ class SceneSweep {
   // `workers`: how many there are; `worker`: the number of the one that calls.
   void plan_bin(std::size_t workers, std::vector<std::uint64_t>& costs);
   void bin(std::size_t block, std::size_t worker);
-  void plan_sweep(std::vector<std::uint64_t>& costs);
+  void plan_sweep(std::size_t worker, std::vector<std::uint64_t>& costs);
   void sweep(std::size_t part, std::size_t worker);
 
   /// To be called before commit(), which then cannot fail.
@@ -80,6 +80,7 @@ class SceneSweep {
   static constexpr std::size_t kOld = 2 * Dim;
 
   void fit();
+  void bin_anew(std::size_t worker);
   [[nodiscard]] std::size_t sort(std::size_t part, Scratch& scratch) const;
   struct WasIs {
     bool was;
@@ -100,7 +101,8 @@ class SceneSweep {
   std::size_t steps_left_ = 0;  // until the next fit
   double crowding_ = 1;
   std::size_t fitted_objects_ = 0;
-  double usual_cost_ = 0;  // of the first sweep after the fit
+  std::size_t most_entries_ = 0;  // of all blocks
+  double usual_cost_ = 0;         // of the first sweep after the fit
 
   StepItems<Bin> bins_;
   StepItems<Sweep> sweeps_;

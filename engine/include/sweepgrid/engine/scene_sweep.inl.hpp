@@ -17,6 +17,8 @@ namespace scene_sweep {
 /// Sweeps after which rows are fitted anew: soon after the first fit, which could not know how crowded the scene is.
 inline constexpr std::size_t kFirstFitSweeps = 2;
 inline constexpr std::size_t kFitSweeps = 128;
+/// So many times as many entries as were foreseen show that the scene is another one by now.
+inline constexpr std::size_t kUnforeseen = 8;
 /// Entries that a worker's cache holds with all that a part needs.
 inline constexpr std::size_t kPartEntries = 8192;
 
@@ -68,6 +70,7 @@ void SceneSweep<Scalar, Dim>::plan_bin(std::size_t workers, std::vector<std::uin
   const std::size_t parts = ((rows_.rows() - 1) >> part_shift_) + 1;
   const std::size_t granules = objects_.granules();
   const std::size_t blocks = workers == 1 ? 1 : std::min<std::size_t>((granules + 3) / 4, 3 * workers);
+  most_entries_ = scene_sweep::kUnforeseen * static_cast<std::size_t>(rows_.expected_entries()) + 65536;
   bins_.restart();
   for (std::size_t b = 0; b < blocks; ++b) {
     Bin& bin = bins_.add();
@@ -86,8 +89,8 @@ void SceneSweep<Scalar, Dim>::plan_bin(std::size_t workers, std::vector<std::uin
 template <class Scalar, int Dim>
 class SceneSweep<Scalar, Dim>::Binner {
  public:
-  Binner(const Bins& rows, int part_shift, Bin& bin, Scratch& scratch)
-      : rows_(rows), part_shift_(part_shift), bin_(bin), batch_(scratch.batch) {}
+  Binner(const Bins& rows, int part_shift, std::size_t most_entries, Bin& bin, Scratch& scratch)
+      : rows_(rows), part_shift_(part_shift), most_entries_(most_entries), bin_(bin), batch_(scratch.batch) {}
 
   // Sees to it that the record holds what the object was before the step and what it is after it.
   void add(ObjectId object, std::uint8_t state, Record& record) {
@@ -150,7 +153,9 @@ class SceneSweep<Scalar, Dim>::Binner {
         if constexpr (!kDirect) copy_into(part, batch_.boxes[place_of(entries.object[i])]);
       }
     }
+    entries_ += entries.count;
     for (std::size_t i = 0; i < far; ++i) put_far(batch_.objects[batch_.far[i]], batch_.boxes[batch_.far[i]]);
+    bin_.overflown = entries_ > most_entries_;
     count_ = 0;
   }
 
@@ -204,6 +209,8 @@ class SceneSweep<Scalar, Dim>::Binner {
     const std::uint32_t reach = static_cast<std::uint32_t>(span.high[cut.along]) << row_marks::kBits | marks;
     const std::uint32_t in_part = (1U << part_shift_) - 1;
     constexpr std::uint32_t kFirst = row_marks::kFirstEarlier;
+    entries_ += std::size_t{more[0] + 1} * (more[1] + 1) * (more[2] + 1);
+    if (entries_ > most_entries_) return;
     for (std::uint32_t z = 0; z <= more[2]; ++z) {
       for (std::uint32_t y = 0; y <= more[1]; ++y) {
         for (std::uint32_t x = 0; x <= more[0]; ++x) {
@@ -219,6 +226,8 @@ class SceneSweep<Scalar, Dim>::Binner {
 
   const Bins& rows_;
   int part_shift_;
+  std::size_t most_entries_;
+  std::size_t entries_ = 0;
   Bin& bin_;
   typename Scratch::Batch& batch_;
   std::uint32_t count_ = 0;
@@ -227,8 +236,8 @@ class SceneSweep<Scalar, Dim>::Binner {
 template <class Scalar, int Dim>
 void SceneSweep<Scalar, Dim>::bin(std::size_t block, std::size_t worker) {
   Bin& bin = bins_[block];
-  Binner binner(rows_, part_shift_, bin, scratch_[worker]);
-  for (std::uint32_t granule = bin.first_granule; granule < bin.last_granule; ++granule) {
+  Binner binner(rows_, part_shift_, most_entries_, bin, scratch_[worker]);
+  for (std::uint32_t granule = bin.first_granule; granule < bin.last_granule && !bin.overflown; ++granule) {
     const ObjectId first = granule * Objects::kGranule;
     const std::uint32_t count = std::min(objects_.bound() - first, Objects::kGranule);
     // A granule is contiguous.
@@ -239,19 +248,37 @@ void SceneSweep<Scalar, Dim>::bin(std::size_t block, std::size_t worker) {
     }
   }
   binner.flush();
+  if (bin.overflown) return;
   for (const auto& part : bin.parts) bin.counters.cell_ops += part.entries.items.size();
-  budget_.charge(bin.counters.cell_ops * kEntryBytes);
+}
+
+// Boxes have grown since rows were fitted, or large ones have come.
+template <class Scalar, int Dim>
+void SceneSweep<Scalar, Dim>::bin_anew(std::size_t worker) {
+  steps_left_ = 0;
+  std::vector<std::uint64_t> unused;
+  plan_bin(scratch_.size(), unused);
+  most_entries_ = std::numeric_limits<std::size_t>::max();
+  for (std::size_t block = 0; block < bins_.size(); ++block) bin(block, worker);
 }
 
 // ---- sweep: rows to events, by part
 
 template <class Scalar, int Dim>
-void SceneSweep<Scalar, Dim>::plan_sweep(std::vector<std::uint64_t>& costs) {
+void SceneSweep<Scalar, Dim>::plan_sweep(std::size_t worker, std::vector<std::uint64_t>& costs) {
+  const auto entries = [this] {
+    std::uint64_t total = 0;
+    for (const Bin& bin : bins_) total += bin.overflown ? most_entries_ + 1 : bin.counters.cell_ops;
+    return total;
+  };
+  // Judged by the sum, which does not depend on how objects are cut into blocks.
+  if (entries() > most_entries_) bin_anew(worker);
+  budget_.charge(entries() * kEntryBytes);
   for (std::size_t part = 0; part < bins_[0].parts.size(); ++part) {
-    std::uint64_t entries = 0;
-    for (const Bin& bin : bins_) entries += bin.parts[part].entries.items.size();
+    std::uint64_t cost = 1;
+    for (const Bin& bin : bins_) cost += bin.parts[part].entries.items.size();
     sweeps_.add().restart();
-    costs.push_back(entries + 1);
+    costs.push_back(cost);
   }
 }
 

@@ -53,7 +53,7 @@ void EngineCore<Scalar, Dim>::bin(std::size_t block) {
 template <class Scalar, int Dim>
 void EngineCore<Scalar, Dim>::plan_sweep(std::vector<std::uint64_t>& costs) {
   if constexpr (SceneSweep<Scalar, Dim>::kPossible) {
-    if (sweeping_) sweep_.plan_sweep(costs);
+    if (sweeping_) sweep_.plan_sweep(static_cast<std::size_t>(executor_->worker()), costs);
   }
 }
 

@@ -47,11 +47,13 @@ struct Bin {
   std::uint32_t first_granule = 0;
   std::uint32_t last_granule = 0;
   StepCounters counters;
+  bool overflown = false;  // has more entries than all blocks should; what is here is not all
   StepList<ObjectId> retired;
   std::vector<Arrivals<Value>> parts;
 
   void restart() {
     counters = StepCounters{};
+    overflown = false;
     retired.restart();
     for (auto& part : parts) part.restart();
   }
