@@ -122,24 +122,7 @@ void expect_counted_throughout(const Config& config, std::uint64_t objects, cons
   play.expect_counted(name + ", all erased");
 }
 
-struct Setting {
-  std::string name;
-  Config config;
-};
-
-/// Every kind of cell, both reductions.
-std::vector<Setting> settings() {
-  std::vector<Setting> all;
-  for (std::size_t kind = 0; kind < oracle::kKinds.size(); ++kind) {
-    for (std::size_t reduction = 0; reduction < oracle::kReductions.size(); ++reduction) {
-      Setting setting{std::string(oracle::kKindNames[kind]) + ", " + oracle::kReductionNames[reduction], serial()};
-      setting.config.cell.kind = oracle::kKinds[kind];
-      setting.config.reduction = oracle::kReductions[reduction];
-      all.push_back(setting);
-    }
-  }
-  return all;
-}
+using oracle::NamedConfig;
 
 Config with_envelopes(bool exact, double margin_steps) {
   Config config = serial();
@@ -150,7 +133,7 @@ Config with_envelopes(bool exact, double margin_steps) {
   return config;
 }
 
-std::vector<Setting> envelopes() {
+std::vector<NamedConfig> envelopes() {
   return {{"envelopes", with_envelopes(false, 0)},
           {"envelopes by speed", with_envelopes(false, 4)},
           {"exact envelopes", with_envelopes(true, 4)}};
@@ -171,19 +154,19 @@ TEST(EngineBytes, AreWhatTheHeapHoldsForManyObjects) {
 }
 
 TEST(EngineBytes, AreWhatTheHeapHoldsInEverySetting) {
-  for (const Setting& setting : settings()) {
+  for (const NamedConfig& setting : oracle::all_configs()) {
     expect_counted_throughout<ByNumber, std::uint64_t>(setting.config, 1500, setting.name);
   }
 }
 
 TEST(EngineBytes, AreWhatTheHeapHoldsWithEnvelopes) {
-  for (const Setting& setting : envelopes()) {
+  for (const NamedConfig& setting : envelopes()) {
     expect_counted_throughout<ByNumber, std::uint64_t>(setting.config, 1500, setting.name);
   }
 }
 
 TEST(EngineBytes, AreWhatTheHeapHoldsWithOtherKeys) {
-  for (const Setting& setting : envelopes()) {
+  for (const NamedConfig& setting : envelopes()) {
     expect_counted_throughout<ByName, Name>(setting.config, 1500, "names, " + setting.name);
   }
   expect_counted_throughout<ByShortNumber, std::int16_t>(serial(), 1500, "short numbers");

@@ -36,22 +36,14 @@ class Lattice {
   float apart_;
 };
 
-struct Setting {
-  std::string name;
-  Config config;
-};
+using oracle::NamedConfig;
 
-std::vector<Setting> settings() {
-  std::vector<Setting> all;
-  for (std::size_t kind = 0; kind < oracle::kKinds.size(); ++kind) {
-    if (oracle::kKinds[kind] == CellKind::kClassic || oracle::kKinds[kind] == CellKind::kPlane) continue;
-    for (std::size_t reduction = 0; reduction < oracle::kReductions.size(); ++reduction) {
-      Setting setting{std::string(oracle::kKindNames[kind]) + ", " + oracle::kReductionNames[reduction], serial()};
-      setting.config.cell.kind = oracle::kKinds[kind];
-      setting.config.reduction = oracle::kReductions[reduction];
-      all.push_back(setting);
-    }
-  }
+/// Without the baselines, which allocate as they please.
+std::vector<NamedConfig> settings() {
+  auto all = oracle::all_configs();
+  std::erase_if(all, [](const NamedConfig& named) {
+    return named.config.cell.kind == CellKind::kClassic || named.config.cell.kind == CellKind::kPlane;
+  });
   return all;
 }
 
@@ -85,7 +77,7 @@ std::int64_t allocations_of_steps(const Config& config, const Lattice& lattice, 
 TEST(Heap, AWarmStepWhoseObjectsStayInTheirCellsAllocatesNothing) {
   const Lattice apart(8, 1.5F);
   const Lattice close(8, 0.95F);  // each overlaps all around it, before and after
-  for (Setting& setting : settings()) {
+  for (NamedConfig& setting : settings()) {
     for (const StepMethod method : {StepMethod::kCells, StepMethod::kSweep}) {
       setting.config.step_method = method;
       for (const Lattice& lattice : {apart, close}) {
@@ -100,7 +92,7 @@ TEST(Heap, AWarmStepWhoseObjectsStayInTheirCellsAllocatesNothing) {
 
 TEST(Heap, NorDoesOneOfCrowdedCells) {
   const Lattice crowd(9, 1.5F);  // more objects in a cell than fit on the stack
-  for (Setting& setting : settings()) {
+  for (NamedConfig& setting : settings()) {
     setting.config.cell_size = 1000;
     setting.config.step_method = StepMethod::kCells;
     if (setting.config.cell.kind == CellKind::kAuto) continue;  // now and then tries another kind
@@ -150,9 +142,9 @@ class Flood {
   Engine3 engine_;
 };
 
-std::vector<Setting> settings_on_threads() {
-  std::vector<Setting> all = settings();
-  for (const Setting& setting : settings()) {
+std::vector<NamedConfig> settings_on_threads() {
+  std::vector<NamedConfig> all = settings();
+  for (const NamedConfig& setting : settings()) {
     all.push_back(setting);
     all.back().name += ", 3 threads";
     all.back().config.executor = make_executor(3);
@@ -161,7 +153,7 @@ std::vector<Setting> settings_on_threads() {
 }
 
 TEST(Heap, WhatAFloodTookGoesBackAfter64Steps) {
-  for (const Setting& setting : settings_on_threads()) {
+  for (const NamedConfig& setting : settings_on_threads()) {
     const std::int64_t before = heap::bytes();
     Flood flood(setting.config);
     const std::int64_t calm = heap::bytes() - before;

@@ -148,6 +148,27 @@ inline constexpr std::array<const char*, 2> kReductionNames{"single reporters", 
 inline constexpr std::array kStepMethods{StepMethod::kAuto, StepMethod::kSweep, StepMethod::kCells};
 inline constexpr std::array kThreadCounts{1, 2, 3, 8};
 
+/// Settings, and what to call them.
+struct NamedConfig {
+  std::string name;
+  Config config;
+};
+
+/// Every kind of cell, both reductions, on one thread.
+inline std::vector<NamedConfig> all_configs() {
+  std::vector<NamedConfig> all;
+  for (std::size_t kind = 0; kind < kKinds.size(); ++kind) {
+    for (std::size_t reduction = 0; reduction < kReductions.size(); ++reduction) {
+      NamedConfig named{std::string(kKindNames[kind]) + ", " + kReductionNames[reduction], {}};
+      named.config.cell.kind = kKinds[kind];
+      named.config.reduction = kReductions[reduction];
+      named.config.threads = 1;
+      all.push_back(std::move(named));
+    }
+  }
+  return all;
+}
+
 /// Plays a script to an engine and the model; says what differed and when, nothing when all was well.
 template <class Scalar, int Dim, class Script>
 std::string play(const Config& config, Script script, int steps, Calls calls) {
