@@ -49,10 +49,10 @@ struct Config {
   StepMethod step_method = StepMethod::kAuto;
   /// Margins, swept boxes, strides: accuracy for time. Absent: none, and pairs are exact.
   std::optional<EnvelopeOptions> envelope;
-  /// Most bytes that the lists of one step may take: 16 for every call to a cell, 16 for every overlap delta (32 with
-  /// witness counts), and for every event 8 and twice the size of its keys. Lists double as they grow, so that memory
-  /// for two to three times as much is needed. Absent: as memory lasts. A step beyond it is refused, see
-  /// Engine::step(). Whether it is does not depend on the number of threads.
+  /// Most bytes that the lists of one step may take: 16 for every call to a cell or, in a sweep, entry in a row, 16 for
+  /// every overlap delta (32 with witness counts), and for every event 8 and twice the size of its keys. Lists double
+  /// as they grow, so that memory for two to three times as much is needed. Absent: as memory lasts. A step beyond it
+  /// is refused, see Engine::step(). Whether it is does not depend on the number of threads.
   std::optional<std::uint64_t> step_bytes;
   /// Where the step runs; absent: `threads` workers of the engine's own (0: as many as the machine has; 1: none).
   std::shared_ptr<Executor> executor;

@@ -102,6 +102,7 @@ class EngineCore {
   void plan_sweep(std::vector<std::uint64_t>& costs);
   void sweep(std::size_t part);
   [[nodiscard]] bool choose_sweep();
+  void list_marked();
   [[nodiscard]] std::size_t estimated_changes() const;
   void plan_route(std::vector<std::uint64_t>& costs);
   void route(std::size_t block);
@@ -127,6 +128,7 @@ class EngineCore {
   void pass_idle_steps();
   void take_back_step() noexcept;
   void make_cells();
+  void make_cells(const std::vector<BoxType>& scene, const typename GridFit<Scalar, Dim>::Result& result);
   void fill_cells();
   void fill_counted();
 

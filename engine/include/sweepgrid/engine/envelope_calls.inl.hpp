@@ -108,7 +108,6 @@ bool KeyedEngine<Scalar, Dim>::step_with_envelopes() {
         cancel();
         return false;
       }
-    } else {
     }
     if (p.filter ? !p.filter->run_step(query) : !query) p.order.rest();
   } catch (...) {

@@ -94,10 +94,11 @@ void EngineCore<Scalar, Dim>::follow_with_levels() {
     regrid_.fitted(result.met, objects);
     gridded_ = true;
   } else if (!config_.cell_size && (regrid_.outgrown(objects) || regrid_.crowded() || regrid_.sparse())) {
-    const auto result = fit(sample(GridFit<Scalar, Dim>::sample_size(objects)));
+    const auto boxes = sample(GridFit<Scalar, Dim>::sample_size(objects));
+    const auto result = fit(boxes);
     const double change = result.cell_size / levels_.cell_size();
     if (change > 1.25 || change < 0.8) {
-      make_cells();
+      make_cells(boxes, result);
       counters_.regrids = 1;
     } else if (regrid_.outgrown(objects)) {
       regrid_.fitted(result.met, objects);

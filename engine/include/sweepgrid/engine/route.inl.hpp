@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cstring>
+#include <numeric>
 
 #include <sweepgrid/engine/engine_core.hpp>
 #include <sweepgrid/grid/levels.inl.hpp>
@@ -29,11 +30,10 @@ void EngineCore<Scalar, Dim>::plan_route(std::vector<std::uint64_t>& costs) {
   }
   follow_scene();
   objects_.nothing_queued();
-  const std::uint32_t granules = objects_.granules();
-  marked_.restart();
   std::vector<std::uint32_t>& marked = marked_.items;
-  for (std::uint32_t granule = 0; granule < granules; ++granule) {
-    if (regridding_ || objects_.granule_marked(granule)) marked.push_back(granule);
+  if (regridding_) {
+    marked.resize(objects_.granules());
+    std::iota(marked.begin(), marked.end(), 0);
   }
   const auto workers = static_cast<std::size_t>(executor_->concurrency());
   const bool small = workers == 1 || marked.size() < 8;

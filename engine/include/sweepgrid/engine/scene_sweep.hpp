@@ -62,6 +62,13 @@ class SceneSweep {
   [[nodiscard]] std::span<const PairKey> begins(std::size_t list) const { return sweeps_[list].begins.items; }
   [[nodiscard]] std::span<const PairKey> ends(std::size_t list) const { return sweeps_[list].ends.items; }
 
+  /// Calls `visit(row, marks)` for every row in which a box is as rows are fitted now: see RowBins::for_each_row().
+  template <class Visit>
+  void for_each_row(const BoxType& box, Visit&& visit) const {
+    const auto values = values_of(box);
+    rows_.for_each_row(rows_.span(values.data(), values.data()), visit);
+  }
+
   /// Heap bytes held.
   [[nodiscard]] std::size_t bytes() const { return bins_.bytes() + sweeps_.bytes() + scratch_.bytes(); }
 
@@ -79,6 +86,7 @@ class SceneSweep {
   static constexpr bool kDirect = std::is_same_v<Scalar, Value>;
   static constexpr std::size_t kOld = 2 * Dim;
 
+  [[nodiscard]] static std::array<Value, 2 * Dim> values_of(const BoxType& box);
   void fit();
   void bin_anew(std::size_t worker);
   [[nodiscard]] std::size_t sort(std::size_t part, Scratch& scratch) const;

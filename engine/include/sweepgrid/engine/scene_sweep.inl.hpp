@@ -32,13 +32,7 @@ void SceneSweep<Scalar, Dim>::fit() {
   const auto with_values = [&](ObjectId object, auto&& use) {
     const std::uint8_t state = objects_.state(object);
     if (state == 0 || (state & Objects::kErased) != 0) return;
-    const BoxType& box = objects_.record(object).box;
-    std::array<Value, 2 * Dim> values;
-    for (int axis = 0; axis < Dim; ++axis) {
-      values[axis] = static_cast<Value>(box.min[axis]);
-      values[Dim + axis] = static_cast<Value>(box.max[axis]);
-    }
-    use(values);
+    use(values_of(objects_.record(object).box));
   };
   std::array<std::array<Value, 2 * Dim>, kSample> sample;
   std::size_t sampled = 0;
@@ -56,6 +50,16 @@ void SceneSweep<Scalar, Dim>::fit() {
   steps_left_ = fitted_objects_ == 0 ? scene_sweep::kFirstFitSweeps : scene_sweep::kFitSweeps;
   fitted_objects_ = objects_.size();
   usual_cost_ = 0;
+}
+
+template <class Scalar, int Dim>
+auto SceneSweep<Scalar, Dim>::values_of(const BoxType& box) -> std::array<Value, 2 * Dim> {
+  std::array<Value, 2 * Dim> values;
+  for (int axis = 0; axis < Dim; ++axis) {
+    values[axis] = static_cast<Value>(box.min[axis]);
+    values[Dim + axis] = static_cast<Value>(box.max[axis]);
+  }
+  return values;
 }
 
 // ---- bin: objects into rows, by block
@@ -194,34 +198,17 @@ class SceneSweep<Scalar, Dim>::Binner {
   void put(ObjectId object, const Value* a, const Value* b, std::uint32_t marks, const Value* both) {
     if constexpr (!kDirect) marks |= sweep_tasks::marks::kCopied;
     const auto span = rows_.span(a, b);
-    const auto& cut = rows_.cut();
-    // Of each row axis.
-    std::array<std::uint32_t, 3> more{};
-    std::array<std::uint32_t, 3> stride{};
-    std::uint32_t first = 0;
-    for (int axis = 0, used = 0; axis < Dim; ++axis) {
-      if (axis == cut.along) continue;
-      more[used] = static_cast<std::uint32_t>(span.high[axis] - span.low[axis]);
-      stride[used] = cut.stride[axis];
-      first += static_cast<std::uint32_t>(span.low[axis]) * stride[used++];
-    }
-    const auto low = static_cast<std::uint32_t>(span.low[cut.along]);
-    const std::uint32_t reach = static_cast<std::uint32_t>(span.high[cut.along]) << row_marks::kBits | marks;
+    const int along = rows_.cut().along;
+    const auto low = static_cast<std::uint32_t>(span.low[along]);
+    const std::uint32_t reach = static_cast<std::uint32_t>(span.high[along]) << row_marks::kBits | marks;
     const std::uint32_t in_part = (1U << part_shift_) - 1;
-    constexpr std::uint32_t kFirst = row_marks::kFirstEarlier;
-    entries_ += std::size_t{more[0] + 1} * (more[1] + 1) * (more[2] + 1);
+    entries_ += rows_.rows_of(span);
     if (entries_ > most_entries_) return;
-    for (std::uint32_t z = 0; z <= more[2]; ++z) {
-      for (std::uint32_t y = 0; y <= more[1]; ++y) {
-        for (std::uint32_t x = 0; x <= more[0]; ++x) {
-          const std::uint32_t row = first + x * stride[0] + y * stride[1] + z * stride[2];
-          const std::uint32_t earlier = (x != 0 ? kFirst : 0) | (y != 0 ? 2 * kFirst : 0) | (z != 0 ? 4 * kFirst : 0);
-          auto& part = bin_.parts[row >> part_shift_];
-          part.entries.items.push_back({(row & in_part) * rows_.bins() + low, object, reach | earlier});
-          if ((marks & sweep_tasks::marks::kCopied) != 0) copy_into(part, both);
-        }
-      }
-    }
+    rows_.for_each_row(span, [&](std::uint32_t row, std::uint32_t earlier) {
+      auto& part = bin_.parts[row >> part_shift_];
+      part.entries.items.push_back({(row & in_part) * rows_.bins() + low, object, reach | earlier});
+      if ((marks & sweep_tasks::marks::kCopied) != 0) copy_into(part, both);
+    });
   }
 
   const Bins& rows_;

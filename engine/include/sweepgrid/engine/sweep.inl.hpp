@@ -17,28 +17,35 @@ bool EngineCore<Scalar, Dim>::choose_sweep() {
   return method_.sweep(estimated_changes(), objects_.size(), celled_ && gridded_);
 }
 
+template <class Scalar, int Dim>
+void EngineCore<Scalar, Dim>::list_marked() {
+  marked_.restart();
+  for (std::uint32_t granule = 0; granule < objects_.granules(); ++granule) {
+    if (objects_.granule_marked(granule)) marked_.items.push_back(granule);
+  }
+}
+
 // Judged by every 16th of the granules with a mark; in the others nothing has changed.
 template <class Scalar, int Dim>
 std::size_t EngineCore<Scalar, Dim>::estimated_changes() const {
+  const std::vector<std::uint32_t>& marked = marked_.items;
   std::size_t seen = 0;
   std::size_t changed = 0;
-  std::size_t marked = 0;
-  const std::uint32_t granules = objects_.granules();
-  for (std::uint32_t granule = 0; granule < granules; ++granule) {
-    if (!objects_.granule_marked(granule) || marked++ % 16 != 0) continue;
-    const ObjectId first = granule * Objects::kGranule;
+  for (std::size_t i = 0; i < marked.size(); i += 16) {
+    const ObjectId first = marked[i] * Objects::kGranule;
     const ObjectId end = std::min(objects_.bound() - first, Objects::kGranule) + first;
     for (ObjectId object = first; object < end; ++object) {
       changed += (objects_.state(object) & Objects::kQueued) != 0 ? 1 : 0;
     }
     ++seen;
   }
-  return seen == 0 ? 0 : changed * marked / seen;
+  return seen == 0 ? 0 : changed * marked.size() / seen;
 }
 
 template <class Scalar, int Dim>
 void EngineCore<Scalar, Dim>::plan_bin(std::vector<std::uint64_t>& costs) {
   pass_idle_steps();
+  list_marked();
   sweeping_ = choose_sweep();
   if constexpr (SceneSweep<Scalar, Dim>::kPossible) {
     if (sweeping_) sweep_.plan_bin(static_cast<std::size_t>(executor_->concurrency()), costs);
@@ -75,7 +82,7 @@ void EngineCore<Scalar, Dim>::commit_sweep() noexcept {
   method_.note_sweep(objects_.size(), counters_.cell_ops, counters_.cells.box_tests / 2);
   levels_.clear();
   celled_ = gridded_ = false;
-  marked_.pass(1);
+  marked_.note_step();
   blocks_.pass(1);
   gathers_.pass(1);
   tasks_.pass(1);

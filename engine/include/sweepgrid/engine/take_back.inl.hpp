@@ -78,9 +78,14 @@ void EngineCore<Scalar, Dim>::take_back_step() noexcept {
 // Cells for all objects with the boxes of the latest step, in a grid that suits them.
 template <class Scalar, int Dim>
 void EngineCore<Scalar, Dim>::make_cells() {
-  celled_ = gridded_ = false;
   const auto scene = sample(GridFit<Scalar, Dim>::sample_size(objects_.size()));
-  const auto result = fit(scene);
+  make_cells(scene, fit(scene));
+}
+
+template <class Scalar, int Dim>
+void EngineCore<Scalar, Dim>::make_cells(const std::vector<BoxType>& scene,
+                                         const typename GridFit<Scalar, Dim>::Result& result) {
+  celled_ = gridded_ = false;
   if (counting()) {
     start_single(result, bounded(result));
     fill_counted();
@@ -169,21 +174,45 @@ void EngineCore<Scalar, Dim>::fill_counted() {
   }
 }
 
-// The pairs of the latest step from the boxes alone, for while there are no cells.
+// The pairs of the latest step from the boxes alone, for while there are no cells: row by row, as rows were fitted to
+// the latest sweep. A pair counts in the first row that it shares.
 template <class Scalar, int Dim>
 std::vector<PairKey> EngineCore<Scalar, Dim>::swept_pairs() const {
-  std::vector<CellOp<Scalar, Dim>> ops;
-  ops.reserve(objects_.size());
+  struct Entry {
+    std::uint32_t row;
+    ObjectId object;
+    std::uint32_t marks;
+  };
+  std::vector<Entry> entries;
   for (ObjectId object = 0; object < objects_.bound(); ++object) {
     if (!stepped<Scalar, Dim>(objects_.state(object))) continue;
-    ops.push_back({object, OpKind::kInsert, OrderedBox<Scalar, Dim>(stepped_box(object))});
+    const auto put = [&](std::uint32_t row, std::uint32_t marks) { entries.push_back({row, object, marks}); };
+    if constexpr (SceneSweep<Scalar, Dim>::kPossible) {
+      sweep_.for_each_row(stepped_box(object), put);
+    } else {
+      put(0, 0);
+    }
   }
-  DeltaList deltas;
-  SapCounters unused;
-  make_cell<Scalar, Dim>({CellKind::kBatch})->drain(ops, deltas, unused);
+  std::sort(entries.begin(), entries.end(),
+            [](const Entry& a, const Entry& b) { return std::pair(a.row, a.object) < std::pair(b.row, b.object); });
   std::vector<PairKey> pairs;
-  pairs.reserve(deltas.size());
-  for (const OverlapDelta& delta : deltas) pairs.push_back(delta.pair);
+  std::vector<CellOp<Scalar, Dim>> ops;
+  for (auto first = entries.begin(), last = first; first != entries.end(); first = last) {
+    ops.clear();
+    for (; last != entries.end() && last->row == first->row; ++last) {
+      ops.push_back({last->object, OpKind::kInsert, OrderedBox<Scalar, Dim>(stepped_box(last->object))});
+    }
+    const auto marks_of = [&](ObjectId object) {
+      return std::lower_bound(first, last, object, [](const Entry& entry, ObjectId id) { return entry.object < id; })
+          ->marks;
+    };
+    DeltaList deltas;
+    SapCounters unused;
+    make_cell<Scalar, Dim>({CellKind::kBatch})->drain(ops, deltas, unused);
+    for (const OverlapDelta& delta : deltas) {
+      if ((marks_of(delta.pair.lower()) & marks_of(delta.pair.upper())) == 0) pairs.push_back(delta.pair);
+    }
+  }
   return pairs;
 }
 

@@ -18,6 +18,8 @@ template <class Value, int Dim>
 class RowBins {
  public:
   using Cut = RowCut<Value, Dim>;
+  /// Everything is in one row.
+  RowBins() { cut_.scale.fill(std::numeric_limits<Value>::min()); }
   [[nodiscard]] const Cut& cut() const { return cut_; }
   [[nodiscard]] std::uint32_t bins() const { return bins_; }
   [[nodiscard]] std::uint32_t rows() const { return rows_; }
@@ -35,6 +37,38 @@ class RowBins {
       span.high[axis] = cell(std::max(a[Dim + axis], b[Dim + axis]), axis);
     }
     return span;
+  }
+
+  /// In how many rows it is.
+  [[nodiscard]] std::size_t rows_of(const Span& span) const {
+    std::size_t rows = 1;
+    for (int axis = 0; axis < Dim; ++axis) {
+      if (axis != cut_.along) rows *= static_cast<std::size_t>(span.high[axis] - span.low[axis]) + 1;
+    }
+    return rows;
+  }
+  /// Calls `visit(row, marks)` for each of them; `marks`: bits of row_marks::kEarlier.
+  template <class Visit>
+  void for_each_row(const Span& span, Visit&& visit) const {
+    // Of each row axis.
+    std::array<std::uint32_t, 3> more{};
+    std::array<std::uint32_t, 3> stride{};
+    std::uint32_t first = 0;
+    for (int axis = 0, used = 0; axis < Dim; ++axis) {
+      if (axis == cut_.along) continue;
+      more[used] = static_cast<std::uint32_t>(span.high[axis] - span.low[axis]);
+      stride[used] = cut_.stride[axis];
+      first += static_cast<std::uint32_t>(span.low[axis]) * stride[used++];
+    }
+    constexpr std::uint32_t kFirst = row_marks::kFirstEarlier;
+    for (std::uint32_t z = 0; z <= more[2]; ++z) {
+      for (std::uint32_t y = 0; y <= more[1]; ++y) {
+        for (std::uint32_t x = 0; x <= more[0]; ++x) {
+          visit(first + x * stride[0] + y * stride[1] + z * stride[2],
+                (x != 0 ? kFirst : 0) | (y != 0 ? 2 * kFirst : 0) | (z != 0 ? 4 * kFirst : 0));
+        }
+      }
+    }
   }
 
   /// What a fit goes by: where a scene is, and how wide its boxes are.
