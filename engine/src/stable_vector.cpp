@@ -11,9 +11,13 @@ void* allocate(std::size_t bytes, std::size_t alignment) {
                                                        : ::operator new (bytes, std::align_val_t{alignment});
 }
 
+// No conditional expression: clang 14 calls both functions for one.
 void deallocate(void* block, std::size_t alignment) {
-  alignment <= __STDCPP_DEFAULT_NEW_ALIGNMENT__ ? ::operator delete(block)
-                                                : ::operator delete (block, std::align_val_t{alignment});
+  if (alignment <= __STDCPP_DEFAULT_NEW_ALIGNMENT__) {
+    ::operator delete(block);
+  } else {
+    ::operator delete (block, std::align_val_t{alignment});
+  }
 }
 
 }  // namespace
