@@ -77,11 +77,11 @@ class EngineProgram {
       : config_(std::move(config)), boxes_(palette), input_(input), engine_(std::move(engine)) {
     for (std::size_t number = 0; number < kKeys; ++number) keys_.push_back(make_key<Key>(number));
     trace("engine of ", Dim, " dimensions, sizeof(Scalar) ", sizeof(Scalar), ", kind ",
-          static_cast<int>(config_.cell.kind), ", reduction ", static_cast<int>(config_.reduction), ", cell size ",
-          config_.cell_size.value_or(0), ", population ", config_.cell_population.value_or(0), ", integration ",
-          static_cast<int>(config_.cell.integration), ", segment capacity ", config_.cell.segment_capacity,
-          ", threads ", config_.executor->concurrency(), ", step bytes ",
-          config_.step_bytes ? std::to_string(*config_.step_bytes) : "-");
+          static_cast<int>(config_.cell.kind), ", reduction ", static_cast<int>(config_.reduction), ", step method ",
+          static_cast<int>(config_.step_method), ", cell size ", config_.cell_size.value_or(0), ", population ",
+          config_.cell_population.value_or(0), ", integration ", static_cast<int>(config_.cell.integration),
+          ", segment capacity ", config_.cell.segment_capacity, ", threads ", config_.executor->concurrency(),
+          ", step bytes ", config_.step_bytes ? std::to_string(*config_.step_bytes) : "-");
     if (config_.envelope) {
       const EnvelopeOptions& options = *config_.envelope;
       trace("envelope: margin ", options.margin, ", margin steps ", options.margin_steps, ", swept ", options.swept,
@@ -344,7 +344,7 @@ class EngineProgram {
     Events<Key> expected = model_.step();
     if (planted("pair") && !expected.begins.empty()) expected.begins.pop_back();
     if (config_.envelope) {
-      if constexpr (kTellsEnvelopes) compare_with_envelopes(expected);
+      compare_with_envelopes(expected);
     } else {
       require_same(oracle::difference(expected, *events));
       require_same(oracle::compare(*engine_, model_));
@@ -358,14 +358,17 @@ class EngineProgram {
     check_unchanged();
   }
 
-  void compare_with_envelopes(const Events<Key>& expected) requires kTellsEnvelopes {
-    const EnvelopeOptions& options = *config_.envelope;
-    const bool always = options.stride == 1 || options.on_violation == OnViolation::kQuery;
-    if (options.exact && (always || engine_->envelope_report().violations == 0)) {
-      require_same(oracle::difference(expected, events_));
+  // Not `requires`: clang 14 instantiates what that rules out, too.
+  void compare_with_envelopes(const Events<Key>& expected) {
+    if constexpr (kTellsEnvelopes) {
+      const EnvelopeOptions& options = *config_.envelope;
+      const bool always = options.stride == 1 || options.on_violation == OnViolation::kQuery;
+      if (options.exact && (always || engine_->envelope_report().violations == 0)) {
+        require_same(oracle::difference(expected, events_));
+      }
+      require_same(listener_.hear(events_));
+      require_same(oracle::compare_envelopes(options, *engine_, model_, listener_));
     }
-    require_same(listener_.hear(events_));
-    require_same(oracle::compare_envelopes(options, *engine_, model_, listener_));
   }
 
   // ---- making a call, and what must be true after it
