@@ -1,3 +1,4 @@
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <string>
@@ -273,6 +274,121 @@ TEST(Sweep, BoxesThatGrowAllAtOnceGetOtherRowsInTheSameStep) {
     EXPECT_TRUE(engine.pairs().empty());
     engine.validate();
   }
+}
+
+// What a whole scene can do in one step.
+enum class Change { kNone, kShiftAlongOneAxis, kShiftAlongAll, kShrink, kGrow, kSpread, kGather };
+
+std::array<Box<float, 3>, 2> before_and_after(Change change, Random& random, float extent) {
+  const auto at = [&] { return static_cast<float>(random.below(10'000)) / 10'000 * extent; };
+  const std::array<float, 3> place{at(), at(), at()};
+  const auto box = [&](float scale, float shift, bool all, float width) {
+    return cube(place[0] * scale + shift, place[1] * scale + (all ? shift : 0), place[2] * scale + (all ? shift : 0),
+                width);
+  };
+  const Box<float, 3> usual = box(1, 0, false, 0.5F);
+  switch (change) {
+    case Change::kNone:
+      return {usual, box(1, 0.01F, true, 0.5F)};
+    case Change::kShiftAlongOneAxis:
+      return {usual, box(1, 1e5F, false, 0.5F)};
+    case Change::kShiftAlongAll:
+      return {usual, box(1, -1e5F, true, 0.5F)};
+    case Change::kShrink:
+      return {box(1, 0, false, 2), box(1, 0, false, 0.02F)};
+    case Change::kGrow:
+      return {box(1, 0, false, 0.02F), box(1, 0, false, 2)};
+    case Change::kSpread:
+      return {usual, box(100, 0, false, 0.5F)};
+    case Change::kGather:
+      return {box(100, 0, false, 0.01F), box(1, 0, false, 0.01F)};
+  }
+  return {usual, usual};
+}
+
+constexpr std::array kChanges{
+    Change::kNone,  Change::kShiftAlongOneAxis, Change::kShiftAlongAll, Change::kShrink, Change::kGrow, Change::kSpread,
+    Change::kGather};
+
+TEST(Sweep, IsExactWhileAWholeSceneChanges) {
+  for (const Change change : kChanges) {
+    for (const int threads : {1, 3}) {
+      Pairing<float, 3> scene(config_of(StepMethod::kSweep, threads));
+      Random random(11);
+      std::vector<std::array<Box<float, 3>, 2>> boxes;
+      for (int key = 0; key < 1200; ++key) boxes.push_back(before_and_after(change, random, 13));
+      for (int step = 0; step < 6; ++step) {
+        for (std::uint64_t key = 0; key < boxes.size(); ++key) {
+          // Some come and go as all the others change.
+          if (step >= 3 && key % 50 == 7) {
+            if (step == 3) scene.erase(key);
+          } else if (step >= 3 || key % 50 != 9) {
+            scene.put(key, boxes[key][step < 3 ? 0 : 1]);
+          }
+        }
+        ASSERT_EQ(scene.step(), "") << "change " << static_cast<int>(change) << ", step " << step;
+      }
+    }
+  }
+}
+
+// Neither the rows for what boxes were nor those for what they are would do for both.
+TEST(Sweep, AStepInWhichAWholeSceneChangesTakesAFewSweeps) {
+  for (const Change change : kChanges) {
+    for (const int threads : {1, 3}) {
+      Engine<float, 3> engine(config_of(StepMethod::kSweep, threads));
+      Random random(12);
+      std::vector<std::array<Box<float, 3>, 2>> boxes;
+      for (int key = 0; key < 12'000; ++key) boxes.push_back(before_and_after(change, random, 34));
+      const auto work_of_step = [&](int state) {
+        for (std::uint64_t key = 0; key < boxes.size(); ++key) {
+          engine.contains(key) ? engine.update(key, boxes[key][state])
+                               : static_cast<void>(engine.insert(key, boxes[key][state]));
+        }
+        engine.step();
+        const StepCounters step = engine.stats().step;
+        return 60 * step.cell_ops + step.cells.box_tests / 2;
+      };
+      work_of_step(0);
+      Box<float, 3>& nudged = boxes[0][0];
+      std::uint64_t calm = 0;
+      for (int step = 0; step < 3; ++step) {
+        for (int axis = 0; axis < 3; ++axis) nudged.min[axis] -= 0.01F;
+        calm = work_of_step(0);
+      }
+      const std::uint64_t changed = work_of_step(1);
+      Engine<float, 3> fresh(config_of(StepMethod::kSweep));
+      for (std::uint64_t key = 0; key < boxes.size(); ++key) fresh.insert(key, boxes[key][1]);
+      fresh.step();
+      const StepCounters step = fresh.stats().step;
+      const std::uint64_t anew = 60 * step.cell_ops + step.cells.box_tests / 2;
+      EXPECT_LT(changed, 3 * (calm + anew)) << "change " << static_cast<int>(change);
+      EXPECT_EQ(engine.pairs().size(), fresh.pairs().size());
+      engine.validate();
+    }
+  }
+}
+
+// A sample of every so many objects would see nothing but the large ones.
+TEST(Sweep, RowsDoNotDependOnTheOrderInWhichSizesCome) {
+  std::uint64_t work[2];
+  for (const bool shuffled : {false, true}) {
+    Engine<float, 3> engine(config_of(StepMethod::kSweep));
+    Random random(8);
+    std::vector<std::uint64_t> order;
+    for (std::uint64_t key = 0; key < 16'384; ++key) order.push_back(key);
+    for (std::size_t i = order.size(); shuffled && i > 1; --i) {
+      std::swap(order[i - 1], order[static_cast<std::size_t>(random.below(static_cast<int>(i)))]);
+    }
+    for (const std::uint64_t key : order) {
+      const auto at = [&] { return static_cast<float>(random.below(100'000)) / 100; };
+      engine.insert(key, cube(at(), at(), at(), key % 16 == 0 ? 150.0F : 1.0F));
+    }
+    engine.step();
+    const StepCounters step = engine.stats().step;
+    work[shuffled ? 1 : 0] = 60 * step.cell_ops + step.cells.box_tests / 2;
+  }
+  EXPECT_LT(work[0], work[1] * 3 / 2);
 }
 
 // Where everything ties, is thin, or lies far outside of where rows were fitted.

@@ -119,6 +119,36 @@ TEST(ObjectTable, AHandleIsGoodFromInsertToErase) {
   EXPECT_FALSE(table.good(handle));
 }
 
+TEST(ObjectTable, ASampleIsOfAllThatAreNotErased) {
+  Table table;
+  std::vector<Handle> handles;
+  for (int i = 0; i < 5000; ++i) handles.push_back(table.insert(kHere));
+  settle(table);
+  std::vector<ObjectId> room(256);
+  const auto sample = [&] {
+    const std::span<const ObjectId> chosen = table.sample(room);
+    EXPECT_TRUE(std::adjacent_find(chosen.begin(), chosen.end(), std::greater_equal<>()) == chosen.end());
+    for (const ObjectId object : chosen) EXPECT_TRUE(table.good(table.handle(object)));
+    return std::vector<ObjectId>(chosen.begin(), chosen.end());
+  };
+  const auto all = sample();
+  EXPECT_EQ(all.size(), 256u);
+  // Every 16th may be of another kind.
+  const auto sixteenth = std::count_if(all.begin(), all.end(), [](ObjectId object) { return object % 16 == 0; });
+  EXPECT_GT(sixteenth, 5);
+  EXPECT_LT(sixteenth, 40);
+  for (int quarter = 0; quarter < 4; ++quarter) {
+    const auto in_quarter = std::count_if(all.begin(), all.end(), [&](ObjectId o) { return o / 1250 == quarter; });
+    EXPECT_NEAR(static_cast<double>(in_quarter), 64, 2);
+  }
+  for (int i = 0; i < 4700; ++i) table.erase(handles[i].index);
+  EXPECT_EQ(sample().size(), 256u);
+  settle(table);
+  EXPECT_EQ(sample().size(), 256u);
+  room.resize(1000);
+  EXPECT_EQ(sample().size(), 300u);
+}
+
 TEST(ObjectTable, AnIdIsNotReusedInTheStepThatErasesIt) {
   Table table;
   const Handle first = table.insert(kHere);

@@ -27,14 +27,10 @@ std::size_t EngineCore<Scalar, Dim>::grid_shards() const {
 
 template <class Scalar, int Dim>
 auto EngineCore<Scalar, Dim>::sample(std::size_t count) const -> std::vector<BoxType> {
+  std::vector<ObjectId> chosen(count);
   std::vector<BoxType> boxes;
-  const std::size_t stride = std::max<std::size_t>(1, objects_.bound() / std::max<std::size_t>(1, count));
-  for (std::size_t object = 0; object < objects_.bound(); object += stride) {
-    const std::uint8_t state = objects_.state(static_cast<ObjectId>(object));
-    if (state != 0 && (state & Objects::kErased) == 0) {
-      boxes.push_back(objects_.record(static_cast<ObjectId>(object)).box);
-    }
-  }
+  boxes.reserve(count);
+  for (const ObjectId object : objects_.sample(chosen)) boxes.push_back(objects_.record(object).box);
   return boxes;
 }
 

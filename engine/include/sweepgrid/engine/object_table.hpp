@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 #include <mutex>
 #include <new>
 #include <span>
@@ -29,6 +31,7 @@ template <class Scalar, int Dim>
 class ObjectTable {
  public:
   using BoxType = Box<Scalar, Dim>;
+  using Width = typename Levels<Scalar, Dim>::Real;
 
   /// What is known of an object, as bits. 0: the id is free.
   enum State : std::uint8_t {
@@ -68,7 +71,7 @@ class ObjectTable {
     Items items;
     std::size_t done = 0;     // items [0, done) are applied
     std::size_t checked = 0;  // items [done, checked) can be; if there are more, the next one cannot
-    double widest = 0;        // of the boxes applied
+    Width widest = 0;         // of the boxes applied, or what no box was wider than
     bool queued = false;      // an op
   };
 
@@ -120,11 +123,25 @@ class ObjectTable {
   /// Ids in use are below this.
   [[nodiscard]] ObjectId bound() const { return bound_.load(std::memory_order_acquire); }
   [[nodiscard]] std::size_t size() const { return live_.load(std::memory_order_relaxed); }
+  /// Chooses objects at random, but always the same, from runs of the same length of all that are not erased; as many
+  /// as there is room for, if there are. Returns them in the order of ids. O(bound()), of bytes.
+  [[nodiscard]] std::span<const ObjectId> sample(std::span<ObjectId> room) const;
+  /// Of the `i`th of `runs` equal runs of all numbers below `end`, one at random, but always the same. Who would take
+  /// the same one of each run might see nothing but every 16th object, which is of another kind.
+  [[nodiscard]] static std::uint64_t any_of_run(std::uint64_t i, std::uint64_t runs, std::uint64_t end) {
+    const std::uint64_t first = i * end / runs;
+    const std::uint64_t length = (i + 1) * end / runs - first;
+    return length == 0 ? first : first + (i * 0x9e3779b97f4a7c15U >> 32) % length;
+  }
   [[nodiscard]] bool anything_queued() const { return queued_.load(std::memory_order_relaxed); }
 
   /// No box was ever wider. Grows on its own; after a step the engine may set it to a lower bound that still holds.
   [[nodiscard]] double widest() const { return widest_.load(std::memory_order_relaxed); }
-  void set_widest(double width) { widest_.store(width, std::memory_order_relaxed); }
+  void set_widest(double width) {
+    auto rounded = static_cast<Width>(width);
+    if (rounded < width) rounded = std::nextafter(rounded, std::numeric_limits<Width>::infinity());
+    widest_.store(rounded, std::memory_order_relaxed);
+  }
 
   /// Granules and whether they hold a marked object.
   [[nodiscard]] std::uint32_t granules() const { return granules_of(bound()); }
@@ -240,7 +257,7 @@ class ObjectTable {
     if (i + 2 * kAhead < items.size()) sweepgrid::prefetch(&objects[items[i + 2 * kAhead]]);
   }
 
-  [[gnu::always_inline]] bool replace(ObjectId object, const BoxType& box, double& widest);
+  [[gnu::always_inline]] bool replace(ObjectId object, const BoxType& box);
 
   ObjectId extend(std::size_t count);
   // To undo a call must not fail: where there is no memory, the id is not used again.
@@ -256,9 +273,13 @@ class ObjectTable {
     records_[object].changed_at = 0;
   }
 
-  static double width(const BoxType& box) { return Levels<Scalar, Dim>::width(box); }
-  void measure(double width) {
-    double widest = widest_.load(std::memory_order_relaxed);
+  using WidthLevels = Levels<Scalar, Dim>;
+  [[gnu::always_inline]] static void widen(Width& widest, const BoxType& box) {
+    if (WidthLevels::wider(box, widest)) [[unlikely]]
+      widest = WidthLevels::width(box);
+  }
+  void measure(Width width) {
+    Width widest = widest_.load(std::memory_order_relaxed);
     while (width > widest && !widest_.compare_exchange_weak(widest, width, std::memory_order_relaxed)) {
     }
   }
@@ -269,7 +290,7 @@ class ObjectTable {
   std::atomic<ObjectId> bound_ = 0;
   std::atomic<std::size_t> live_ = 0;
   std::atomic<bool> queued_ = false;
-  std::atomic<double> widest_ = 0;
+  std::atomic<Width> widest_ = 0;
   // Every generation is at most this: at most one retirement for an object and a step. A fresh record begins with what
   // it was when records were given back, so that no handle of theirs can be good again.
   std::uint32_t latest_generation_ = 0;

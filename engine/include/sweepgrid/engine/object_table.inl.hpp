@@ -25,7 +25,7 @@ Handle ObjectTable<Scalar, Dim>::insert(const BoxType& box) {
   }
   occupy(object, fresh, box);
   mark(object);
-  measure(width(box));
+  measure(WidthLevels::width(box));
   live_.fetch_add(1, std::memory_order_relaxed);
   return handle(object);
 }
@@ -42,16 +42,16 @@ void ObjectTable<Scalar, Dim>::cancel_insert(ObjectId object) {
 template <class Scalar, int Dim>
 bool ObjectTable<Scalar, Dim>::update(Handle object, const BoxType& box) {
   if (!good(object) || !box.valid()) return false;
-  double widest = 0;
-  if (!replace(object.index, box, widest)) return true;
+  if (!replace(object.index, box)) return true;
   something_queued();
-  measure(widest);
+  if (WidthLevels::wider(box, widest_.load(std::memory_order_relaxed))) [[unlikely]]
+    measure(WidthLevels::width(box));
   return true;
 }
 
 // Returns whether the object has a queued op now.
 template <class Scalar, int Dim>
-inline bool ObjectTable<Scalar, Dim>::replace(ObjectId object, const BoxType& box, double& widest) {
+inline bool ObjectTable<Scalar, Dim>::replace(ObjectId object, const BoxType& box) {
   Record& record = records_[object];
   const std::uint8_t state = states_[object];
   if ((state & kQueued) == 0) {
@@ -61,7 +61,6 @@ inline bool ObjectTable<Scalar, Dim>::replace(ObjectId object, const BoxType& bo
     mark_granule(object / kGranule);
   }
   record.box = box;
-  widest = std::max(widest, width(box));
   return true;
 }
 
@@ -71,6 +70,31 @@ void ObjectTable<Scalar, Dim>::erase(ObjectId object) {
   set_state(object, states_[object] | kErased);
   mark(object);
   live_.fetch_sub(1, std::memory_order_relaxed);
+}
+
+template <class Scalar, int Dim>
+std::span<const ObjectId> ObjectTable<Scalar, Dim>::sample(std::span<ObjectId> room) const {
+  const std::size_t wanted = std::min(room.size(), size());
+  const auto alive = [](std::uint8_t state) { return (state & (kLive | kErased)) == kLive; };
+  std::size_t chosen = 0;
+  std::size_t passed = 0;  // objects
+  for (std::uint32_t granule = 0; granule < granules() && chosen < wanted; ++granule) {
+    const ObjectId first = granule * kGranule;
+    const std::uint32_t count = std::min(bound() - first, kGranule);
+    const std::uint8_t* const states = &states_[first];  // a granule is contiguous
+    std::size_t here = 0;
+    for (std::uint32_t i = 0; i < count; ++i) here += alive(states[i]) ? 1 : 0;
+    std::uint64_t next = any_of_run(chosen, wanted, size()) - passed;
+    passed += here;
+    if (next >= here) continue;
+    std::size_t seen = 0;
+    for (std::uint32_t i = 0; i < count && chosen < wanted; ++i) {
+      if (!alive(states[i]) || seen++ != next) continue;
+      room[chosen++] = first + i;
+      next = any_of_run(chosen, wanted, size()) - (passed - here);
+    }
+  }
+  return room.first(chosen);
 }
 
 // ---- many
@@ -97,7 +121,7 @@ void ObjectTable<Scalar, Dim>::begin_insert(Share& share, const NewIds& ids, std
     occupy(object, ids.fresh(item), boxes[item]);
     mark_granule(object / kGranule);
     handles[item] = handle(object);
-    share.widest = std::max(share.widest, width(boxes[item]));
+    widen(share.widest, boxes[item]);
   }
   share.checked = share.done;
 }
@@ -135,6 +159,7 @@ void ObjectTable<Scalar, Dim>::begin_update(Share& share, std::span<const Handle
                                             std::span<const BoxType> boxes) {
   const ObjectId end = bound();
   Share now = share;  // the compiler cannot know that marks are not written into `share`
+  now.widest = widest_.load(std::memory_order_relaxed);
   bool applies = true;
   for (; now.checked < now.items.size(); ++now.checked) {
     prefetch(now.items, now.checked, objects, boxes.data(), end);
@@ -145,7 +170,8 @@ void ObjectTable<Scalar, Dim>::begin_update(Share& share, std::span<const Handle
     applies = applies && (states_[object.index] & kQueued) == 0;
     if (!applies) continue;
     ++now.done;
-    now.queued |= replace(object.index, boxes[item], now.widest);
+    now.queued |= replace(object.index, boxes[item]);
+    widen(now.widest, boxes[item]);
   }
   share = now;
 }
@@ -158,7 +184,8 @@ void ObjectTable<Scalar, Dim>::finish_update(Share& share, std::span<const Handl
   for (; now.done < now.items.size(); ++now.done) {
     prefetch(now.items, now.done, objects, boxes.data(), end);
     const std::size_t item = now.items[now.done];
-    now.queued |= replace(objects[item].index, boxes[item], now.widest);
+    now.queued |= replace(objects[item].index, boxes[item]);
+    widen(now.widest, boxes[item]);
   }
   share = now;
   if (!share.queued) return;

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <type_traits>
 #include <vector>
@@ -86,9 +87,20 @@ class SceneSweep {
   static constexpr bool kDirect = std::is_same_v<Scalar, Value>;
   static constexpr std::size_t kOld = 2 * Dim;
 
+  /// Of a step.
+  enum class Side { kBefore, kAfter };
+  static constexpr std::size_t kEndless = std::numeric_limits<std::size_t>::max();
+
   [[nodiscard]] static std::array<Value, 2 * Dim> values_of(const BoxType& box);
+  template <class Use>
+  void with_box(Side side, ObjectId object, Use&& use) const;
+  [[nodiscard]] Bins fitted(Side side) const;
   void fit();
+  [[nodiscard]] bool crowded(Side side) const;
+  void part_sides();
+  void start_bins(std::size_t workers, std::vector<std::uint64_t>& costs);
   void bin_anew(std::size_t worker);
+  [[nodiscard]] const Bins& rows_of(std::size_t part) const { return part < parts_after_ ? rows_ : rows_before_; }
   [[nodiscard]] std::size_t sort(std::size_t part, Scratch& scratch) const;
   struct WasIs {
     bool was;
@@ -105,12 +117,18 @@ class SceneSweep {
   std::size_t event_bytes_;
 
   Bins rows_;
-  int part_shift_ = 0;          // a part is 2^part_shift_ rows
-  std::size_t steps_left_ = 0;  // until the next fit
+  // In a step in which the scene changed so much that rows for what boxes are now would be bad ones for what they were,
+  // every box before the step is a member of other rows than the box after it.
+  bool apart_ = false;
+  Bins rows_before_;
+  int part_shift_ = 0;           // a part is 2^part_shift_ rows
+  std::size_t parts_after_ = 1;  // of rows_; those of rows_before_ come next
+  std::size_t steps_left_ = 0;   // until the next fit
   double crowding_ = 1;
   std::size_t fitted_objects_ = 0;
   std::size_t most_entries_ = 0;  // of all blocks
-  double usual_cost_ = 0;         // of the first sweep after the fit
+  double usual_entries_ = 0;      // of the first sweep after the fit
+  double usual_meetings_ = 0;
 
   StepItems<Bin> bins_;
   StepItems<Sweep> sweeps_;

@@ -14,42 +14,95 @@ namespace sweepgrid {
 
 namespace scene_sweep {
 
-/// Sweeps after which rows are fitted anew: soon after the first fit, which could not know how crowded the scene is.
+/// Sweeps after which rows are fitted anew: soon after a fit that could not know how crowded the scene is.
 inline constexpr std::size_t kFirstFitSweeps = 2;
 inline constexpr std::size_t kFitSweeps = 128;
-/// So many times as many entries as were foreseen show that the scene is another one by now.
-inline constexpr std::size_t kUnforeseen = 8;
+/// So many times as many meetings as usual, or entries, show that the scene is another one by now.
+inline constexpr double kManyMeetings = 8;
+inline constexpr double kManyEntries = 2;
+/// Smaller scenes sweep themselves in less time than it would take to look at them first.
+inline constexpr std::size_t kGlancedAt = 1024;
 /// Entries that a worker's cache holds with all that a part needs.
-inline constexpr std::size_t kPartEntries = 8192;
+inline constexpr std::size_t kPartEntries = 16384;
 
 }  // namespace scene_sweep
 
 // ---- fitting rows
 
+// Calls `use` with the object's box, if it had one before the step or has one after it.
 template <class Scalar, int Dim>
-void SceneSweep<Scalar, Dim>::fit() {
-  constexpr std::size_t kSample = Bins::Scene::kSample;
-  const auto with_values = [&](ObjectId object, auto&& use) {
-    const std::uint8_t state = objects_.state(object);
-    if (state == 0 || (state & Objects::kErased) != 0) return;
-    use(values_of(objects_.record(object).box));
-  };
-  std::array<std::array<Value, 2 * Dim>, kSample> sample;
+template <class Use>
+void SceneSweep<Scalar, Dim>::with_box(Side side, ObjectId object, Use&& use) const {
+  const std::uint8_t state = objects_.state(object);
+  if (state == 0 || (state & (side == Side::kBefore ? Objects::kInserted : Objects::kErased)) != 0) return;
+  const Record& record = objects_.record(object);
+  use(values_of(side == Side::kBefore && (state & Objects::kQueued) != 0 ? record.before : record.box));
+}
+
+template <class Scalar, int Dim>
+auto SceneSweep<Scalar, Dim>::fitted(Side side) const -> Bins {
+  std::array<ObjectId, Bins::Scene::kSample> chosen;
+  std::array<std::array<Value, 2 * Dim>, Bins::Scene::kSample> sample;
   std::size_t sampled = 0;
-  const ObjectId bound = objects_.bound();
-  const std::uint64_t looked_at = std::min<std::uint64_t>(bound, kSample);
-  for (std::uint64_t i = 0; i < looked_at; ++i) {
-    with_values(static_cast<ObjectId>(i * bound / looked_at), [&](const auto& box) { sample[sampled++] = box; });
+  for (const ObjectId object : objects_.sample(chosen)) {
+    with_box(side, object, [&](const auto& box) { sample[sampled++] = box; });
   }
   const std::span<const std::array<Value, 2 * Dim>> found(sample);
   typename Bins::Scene scene(found.first(sampled));
-  for (ObjectId object = 0; object < bound; ++object) {
-    with_values(object, [&](const auto& box) { scene.add(box.data()); });
+  for (ObjectId object = 0; object < objects_.bound(); ++object) {
+    with_box(side, object, [&](const auto& box) { scene.add(box.data()); });
   }
-  rows_ = Bins::fit(scene, crowding_);
-  steps_left_ = fitted_objects_ == 0 ? scene_sweep::kFirstFitSweeps : scene_sweep::kFitSweeps;
+  return Bins::fit(scene, crowding_);
+}
+
+template <class Scalar, int Dim>
+void SceneSweep<Scalar, Dim>::fit() {
+  rows_ = fitted(Side::kAfter);
+  steps_left_ = steps_left_ == 0 && fitted_objects_ != 0 ? scene_sweep::kFitSweeps : scene_sweep::kFirstFitSweeps;
   fitted_objects_ = objects_.size();
-  usual_cost_ = 0;
+  usual_entries_ = usual_meetings_ = 0;
+}
+
+// Judged by who of a few objects would meet whom.
+template <class Scalar, int Dim>
+bool SceneSweep<Scalar, Dim>::crowded(Side side) const {
+  constexpr std::size_t kGlances = 64;
+  constexpr std::size_t kTooFew = 8;  // may be chance
+  struct Seen {
+    std::uint32_t row;
+    std::int32_t low;
+    std::int32_t high;
+  };
+  const std::uint64_t bound = objects_.bound();
+  if (objects_.size() < scene_sweep::kGlancedAt) return false;
+  std::array<Seen, kGlances> seen;
+  std::size_t count = 0;
+  for (std::uint64_t i = 0; i < kGlances; ++i) {
+    with_box(side, static_cast<ObjectId>(Objects::any_of_run(i, kGlances, bound)), [&](const auto& box) {
+      const auto span = rows_.span(box.data(), box.data());
+      const int along = rows_.cut().along;
+      seen[count++] = {rows_.first_row(span), span.low[along], span.high[along]};
+    });
+  }
+  const auto by_place = [](const Seen& a, const Seen& b) { return a.row != b.row ? a.row < b.row : a.low < b.low; };
+  std::sort(seen.begin(), seen.begin() + static_cast<std::ptrdiff_t>(count), by_place);
+  std::size_t meetings = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t k = i + 1; k < count && seen[k].row == seen[i].row && seen[k].low <= seen[i].high; ++k) ++meetings;
+  }
+  if (meetings < kTooFew) return false;
+  const double scale = static_cast<double>(objects_.size()) / static_cast<double>(count);
+  return static_cast<double>(meetings) * scale * scale >
+         scene_sweep::kManyMeetings * std::max(usual_meetings_, rows_.expected_meetings() * crowding_);
+}
+
+// Boxes have left the place for which rows were fitted, or have grown out of them: one cut cannot do justice to all
+// that they were and all that they are.
+template <class Scalar, int Dim>
+void SceneSweep<Scalar, Dim>::part_sides() {
+  rows_before_ = fitted(Side::kBefore);
+  fit();
+  apart_ = true;
 }
 
 template <class Scalar, int Dim>
@@ -67,14 +120,32 @@ auto SceneSweep<Scalar, Dim>::values_of(const BoxType& box) -> std::array<Value,
 template <class Scalar, int Dim>
 void SceneSweep<Scalar, Dim>::plan_bin(std::size_t workers, std::vector<std::uint64_t>& costs) {
   const std::size_t objects = objects_.size();
-  if (steps_left_ == 0 || objects > 2 * fitted_objects_ || 2 * objects < fitted_objects_) fit();
+  apart_ = false;
+  most_entries_ = kEndless;
+  if (steps_left_ == 0 || objects > 2 * fitted_objects_ || 2 * objects < fitted_objects_) {
+    fit();
+    if (crowded(Side::kBefore)) part_sides();
+  } else if (crowded(Side::kAfter) || crowded(Side::kBefore)) {
+    part_sides();
+  } else {
+    const double usual = std::max(usual_entries_, rows_.expected_entries());
+    most_entries_ = static_cast<std::size_t>(scene_sweep::kManyEntries * usual) + 4096;
+  }
   --steps_left_;
-  const std::size_t wanted = std::max(objects / scene_sweep::kPartEntries, workers == 1 ? 1 : 4 * workers);
-  part_shift_ = std::bit_width(std::max<std::size_t>(1, rows_.rows() / wanted)) - 1;
-  const std::size_t parts = ((rows_.rows() - 1) >> part_shift_) + 1;
+  start_bins(workers, costs);
+  scratch_.restart();
+  while (scratch_.size() < workers) scratch_.add();
+}
+
+template <class Scalar, int Dim>
+void SceneSweep<Scalar, Dim>::start_bins(std::size_t workers, std::vector<std::uint64_t>& costs) {
+  const std::size_t wanted = std::max(objects_.size() / scene_sweep::kPartEntries, workers == 1 ? 1 : 4 * workers);
+  part_shift_ = std::bit_width((rows_.rows() - 1) / wanted);
+  const auto parts_of = [&](const Bins& rows) { return ((rows.rows() - 1) >> part_shift_) + 1; };
+  parts_after_ = parts_of(rows_);
+  const std::size_t parts = parts_after_ + (apart_ ? parts_of(rows_before_) : 0);
   const std::size_t granules = objects_.granules();
   const std::size_t blocks = workers == 1 ? 1 : std::min<std::size_t>((granules + 3) / 4, 3 * workers);
-  most_entries_ = scene_sweep::kUnforeseen * static_cast<std::size_t>(rows_.expected_entries()) + 65536;
   bins_.restart();
   for (std::size_t b = 0; b < blocks; ++b) {
     Bin& bin = bins_.add();
@@ -85,16 +156,21 @@ void SceneSweep<Scalar, Dim>::plan_bin(std::size_t workers, std::vector<std::uin
     costs.push_back(bin.last_granule - bin.first_granule);
   }
   sweeps_.restart();
-  scratch_.restart();
-  while (scratch_.size() < workers) scratch_.add();
 }
 
 /// Puts a block of objects into rows, as many at once as the kernel takes.
 template <class Scalar, int Dim>
 class SceneSweep<Scalar, Dim>::Binner {
  public:
-  Binner(const Bins& rows, int part_shift, std::size_t most_entries, Bin& bin, Scratch& scratch)
-      : rows_(rows), part_shift_(part_shift), most_entries_(most_entries), bin_(bin), batch_(scratch.batch) {}
+  Binner(const SceneSweep& sweep, Bin& bin, Scratch& scratch)
+      : rows_(sweep.rows_),
+        rows_before_(sweep.rows_before_),
+        apart_(sweep.apart_),
+        parts_after_(sweep.parts_after_),
+        part_shift_(sweep.part_shift_),
+        most_entries_(sweep.most_entries_),
+        bin_(bin),
+        batch_(scratch.batch) {}
 
   // Sees to it that the record holds what the object was before the step and what it is after it.
   void add(ObjectId object, std::uint8_t state, Record& record) {
@@ -134,6 +210,7 @@ class SceneSweep<Scalar, Dim>::Binner {
   }
 
   void flush() {
+    if (apart_) return put_sides();
     const std::size_t far =
         Kernel::place(batch_.boxes, batch_.objects, count_, rows_.cut(), batch_.entries, batch_.far);
     const auto& entries = batch_.entries;
@@ -177,41 +254,59 @@ class SceneSweep<Scalar, Dim>::Binner {
 
   // An object whose boxes are far apart would be in all rows between them: they are members of their own.
   void put_far(ObjectId object, const Value* both) {
-    const bool was = both[kOld] == both[kOld];  // not NaN
-    const bool is = both[0] == both[0];
-    if (!was || !is) return put(object, is ? both : both + kOld, is ? both : both + kOld, 0, both);
+    if (!has_side(both + kOld)) return put(rows_, object, both, both, 0, both);
+    if (!has_side(both)) return put(rows_, object, both + kOld, both + kOld, 0, both);
     bool apart = false;
     for (int axis = 0; axis < Dim; ++axis) {
       apart = apart || both[axis] > both[kOld + Dim + axis] || both[kOld + axis] > both[Dim + axis];
     }
-    if (!apart) return put(object, both, both + kOld, 0, both);
-    for (const bool born : {false, true}) {
-      std::array<Value, kValues> half;
-      std::copy_n(both, kValues, half.begin());
-      half[born ? kOld : 0] = kNone;
-      const Value* const side = half.data() + (born ? 0 : kOld);
-      put(object, side, side,
-          sweep_tasks::marks::kCopied | (born ? sweep_tasks::marks::kBorn : sweep_tasks::marks::kGone), half.data());
-    }
+    if (!apart) return put(rows_, object, both, both + kOld, 0, both);
+    put_side(rows_, object, both, 0);
+    put_side(rows_, object, both, kOld);
   }
 
-  void put(ObjectId object, const Value* a, const Value* b, std::uint32_t marks, const Value* both) {
+  void put_sides() {
+    for (std::uint32_t i = 0; i < count_; ++i) {
+      const Value* const both = batch_.boxes[i];
+      if (has_side(both)) put_side(rows_, batch_.objects[i], both, 0);
+      if (has_side(both + kOld)) put_side(rows_before_, batch_.objects[i], both, kOld);
+    }
+    count_ = 0;
+  }
+
+  static bool has_side(const Value* side) { return side[0] == side[0]; }  // not NaN
+
+  // `side`: 0 or kOld.
+  void put_side(const Bins& rows, ObjectId object, const Value* both, std::size_t side) {
+    std::array<Value, kValues> half;
+    std::copy_n(both, kValues, half.begin());
+    half[kOld - side] = kNone;
+    const Value* const box = half.data() + side;
+    put(rows, object, box, box,
+        sweep_tasks::marks::kCopied | (side == 0 ? sweep_tasks::marks::kBorn : sweep_tasks::marks::kGone), half.data());
+  }
+
+  void put(const Bins& rows, ObjectId object, const Value* a, const Value* b, std::uint32_t marks, const Value* both) {
     if constexpr (!kDirect) marks |= sweep_tasks::marks::kCopied;
-    const auto span = rows_.span(a, b);
-    const int along = rows_.cut().along;
+    const auto span = rows.span(a, b);
+    const int along = rows.cut().along;
     const auto low = static_cast<std::uint32_t>(span.low[along]);
     const std::uint32_t reach = static_cast<std::uint32_t>(span.high[along]) << row_marks::kBits | marks;
     const std::uint32_t in_part = (1U << part_shift_) - 1;
-    entries_ += rows_.rows_of(span);
+    entries_ += rows.rows_of(span);
     if (entries_ > most_entries_) return;
-    rows_.for_each_row(span, [&](std::uint32_t row, std::uint32_t earlier) {
-      auto& part = bin_.parts[row >> part_shift_];
-      part.entries.items.push_back({(row & in_part) * rows_.bins() + low, object, reach | earlier});
+    const auto parts = bin_.parts.begin() + (&rows == &rows_ ? 0 : static_cast<std::ptrdiff_t>(parts_after_));
+    rows.for_each_row(span, [&](std::uint32_t row, std::uint32_t earlier) {
+      auto& part = parts[row >> part_shift_];
+      part.entries.items.push_back({(row & in_part) * rows.bins() + low, object, reach | earlier});
       if ((marks & sweep_tasks::marks::kCopied) != 0) copy_into(part, both);
     });
   }
 
   const Bins& rows_;
+  const Bins& rows_before_;
+  bool apart_;
+  std::size_t parts_after_;
   int part_shift_;
   std::size_t most_entries_;
   std::size_t entries_ = 0;
@@ -223,7 +318,7 @@ class SceneSweep<Scalar, Dim>::Binner {
 template <class Scalar, int Dim>
 void SceneSweep<Scalar, Dim>::bin(std::size_t block, std::size_t worker) {
   Bin& bin = bins_[block];
-  Binner binner(rows_, part_shift_, most_entries_, bin, scratch_[worker]);
+  Binner binner(*this, bin, scratch_[worker]);
   for (std::uint32_t granule = bin.first_granule; granule < bin.last_granule && !bin.overflown; ++granule) {
     const ObjectId first = granule * Objects::kGranule;
     const std::uint32_t count = std::min(objects_.bound() - first, Objects::kGranule);
@@ -239,13 +334,13 @@ void SceneSweep<Scalar, Dim>::bin(std::size_t block, std::size_t worker) {
   for (const auto& part : bin.parts) bin.counters.cell_ops += part.entries.items.size();
 }
 
-// Boxes have grown since rows were fitted, or large ones have come.
+// There are far more entries than usual.
 template <class Scalar, int Dim>
 void SceneSweep<Scalar, Dim>::bin_anew(std::size_t worker) {
-  steps_left_ = 0;
+  part_sides();
+  most_entries_ = kEndless;
   std::vector<std::uint64_t> unused;
-  plan_bin(scratch_.size(), unused);
-  most_entries_ = std::numeric_limits<std::size_t>::max();
+  start_bins(scratch_.size(), unused);
   for (std::size_t block = 0; block < bins_.size(); ++block) bin(block, worker);
 }
 
@@ -273,7 +368,7 @@ void SceneSweep<Scalar, Dim>::plan_sweep(std::size_t worker, std::vector<std::ui
 template <class Scalar, int Dim>
 std::size_t SceneSweep<Scalar, Dim>::sort(std::size_t part, Scratch& scratch) const {
   std::vector<std::uint32_t>& bins = scratch.bins.items;
-  bins.assign((std::size_t{rows_.bins()} << part_shift_) + 1, 0);
+  bins.assign((std::size_t{rows_of(part).bins()} << part_shift_) + 1, 0);
   std::size_t total = 0;
   for (const Bin& bin : bins_) {
     for (const auto& entry : bin.parts[part].entries.items) ++bins[entry.bin + 1];
@@ -354,7 +449,7 @@ void SceneSweep<Scalar, Dim>::sweep(std::size_t part, std::size_t worker) {
   const std::size_t total = sort(part, scratch);
   const std::span<const Member> members(scratch.members.items.data(), total);
   const std::uint32_t* bins = scratch.bins.items.data();
-  const std::uint32_t in_row = rows_.bins();
+  const std::uint32_t in_row = rows_of(part).bins();
   std::uint32_t first = 0;
   for (std::size_t row = 0; first < total; ++row, bins += in_row) {
     const std::uint32_t end = bins[in_row - 1];
@@ -381,7 +476,7 @@ void SceneSweep<Scalar, Dim>::reserve() {
 template <class Scalar, int Dim>
 StepCounters SceneSweep<Scalar, Dim>::commit() noexcept {
   StepCounters counters;
-  counters.cells_drained = rows_.rows();
+  counters.cells_drained = rows_.rows() + (apart_ ? rows_before_.rows() : 0);
   for (Bin& bin : bins_) counters += bin.counters;
   std::uint64_t meetings = 0;
   for (Sweep& sweep : sweeps_) meetings += sweep.meetings;
@@ -394,12 +489,17 @@ StepCounters SceneSweep<Scalar, Dim>::commit() noexcept {
     bin.restart();  // lest a step that fails frees ids again
   }
   objects_.nothing_queued();
-  crowding_ = rows_.crowding(static_cast<double>(counters.cell_ops), static_cast<double>(meetings));
-  // The scene has changed since it was fitted.
-  const double cost =
-      Bins::kEntryCost * static_cast<double>(counters.cell_ops) + Bins::kMeetingCost * static_cast<double>(meetings);
-  if (usual_cost_ == 0) usual_cost_ = cost;
-  if (cost > 1.5 * usual_cost_) steps_left_ = 0;
+  const auto entries = static_cast<double>(counters.cell_ops);
+  if (!apart_) {
+    crowding_ = rows_.crowding(entries, static_cast<double>(meetings));
+    if (usual_entries_ == 0) {
+      usual_entries_ = entries;
+      usual_meetings_ = static_cast<double>(meetings);
+    }
+    const auto cost = [](double in_rows, double met) { return Bins::kEntryCost * in_rows + Bins::kMeetingCost * met; };
+    // The scene has changed since it was fitted.
+    if (cost(entries, static_cast<double>(meetings)) > 1.5 * cost(usual_entries_, usual_meetings_)) steps_left_ = 0;
+  }
   bins_.finish();
   for (Sweep& sweep : sweeps_) sweep.note_step();
   sweeps_.finish();

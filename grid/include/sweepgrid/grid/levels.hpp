@@ -29,14 +29,23 @@ class Levels {
   using BoxType = Box<Scalar, Dim>;
   static constexpr GridIndex kNone = 255;
 
+  using Real = std::conditional_t<std::is_same_v<Scalar, float>, float, double>;
   /// Longest edge of a box; infinite boxes are infinitely wide.
-  [[nodiscard]] static double width(const BoxType& box) {
+  [[nodiscard]] static Real width(const BoxType& box) {
     Real width = 0;
     for (int axis = 0; axis < Dim; ++axis) {
       width = std::max(width, static_cast<Real>(box.max[axis]) - static_cast<Real>(box.min[axis]));
     }
     // Infinity minus infinity is NaN, which max() passes over: then it is one of the other edges.
-    return static_cast<double>(width);
+    return width;
+  }
+  /// Whether an edge of the box is longer than that.
+  [[nodiscard, gnu::always_inline]] static bool wider(const BoxType& box, Real width) {
+    bool wider = false;
+    for (int axis = 0; axis < Dim; ++axis) {
+      wider |= static_cast<Real>(box.max[axis]) - static_cast<Real>(box.min[axis]) > width;
+    }
+    return wider;
   }
 
   /// Drops all grids. From now on, homes are in a new family. `shards`: of each of its grids.
@@ -81,7 +90,6 @@ class Levels {
   double drop_empty();
 
  private:
-  using Real = std::conditional_t<std::is_same_v<Scalar, float>, float, double>;
   static constexpr int kLevels = 16;  // the last is the one cell over everything
   static constexpr double kRatio = 4;
 

@@ -47,18 +47,25 @@ class RowBins {
     }
     return rows;
   }
+  /// The first of them.
+  [[nodiscard]] std::uint32_t first_row(const Span& span) const {
+    std::uint32_t row = 0;
+    for (int axis = 0; axis < Dim; ++axis) {
+      if (axis != cut_.along) row += static_cast<std::uint32_t>(span.low[axis]) * cut_.stride[axis];
+    }
+    return row;
+  }
   /// Calls `visit(row, marks)` for each of them; `marks`: bits of row_marks::kEarlier.
   template <class Visit>
   void for_each_row(const Span& span, Visit&& visit) const {
     // Of each row axis.
     std::array<std::uint32_t, 3> more{};
     std::array<std::uint32_t, 3> stride{};
-    std::uint32_t first = 0;
+    const std::uint32_t first = first_row(span);
     for (int axis = 0, used = 0; axis < Dim; ++axis) {
       if (axis == cut_.along) continue;
       more[used] = static_cast<std::uint32_t>(span.high[axis] - span.low[axis]);
-      stride[used] = cut_.stride[axis];
-      first += static_cast<std::uint32_t>(span.low[axis]) * stride[used++];
+      stride[used++] = cut_.stride[axis];
     }
     constexpr std::uint32_t kFirst = row_marks::kFirstEarlier;
     for (std::uint32_t z = 0; z <= more[2]; ++z) {
