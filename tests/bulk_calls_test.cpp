@@ -28,6 +28,7 @@ constexpr std::size_t kMany = 60'000;  // enough for bulk calls to use workers
 Config with_threads(int threads) {
   Config config;
   config.threads = threads;
+  config.parallel_from = 0;
   return config;
 }
 

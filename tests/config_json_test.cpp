@@ -26,6 +26,7 @@ Config changed_everywhere() {
   config.envelope = EnvelopeOptions{1.0 / 3, 2.5, false, 4, OnViolation::kQuery, true};
   config.step_bytes = 10'000'000'000;
   config.threads = 3;
+  config.parallel_from = 17;
   return config;
 }
 
@@ -44,11 +45,11 @@ TEST(ConfigJson, TellsEveryMember) {
     "cell_size": 0.1, "cell_population": 7, "reduction": "counts", "step_method": "sweep",
     "envelope": {"margin": 0.3333333333333333, "margin_steps": 2.5, "swept": false, "stride": 4,
                  "on_violation": "query", "exact": true},
-    "step_bytes": 10000000000, "threads": 3})"));
+    "step_bytes": 10000000000, "threads": 3, "parallel_from": 17})"));
   EXPECT_EQ(Json(Config{}), Json::parse(R"({
     "cell": {"kind": "auto", "segment_capacity": 32, "integration": "auto"},
     "cell_size": null, "cell_population": null, "reduction": "reporter", "step_method": "auto", "envelope": null,
-    "step_bytes": null, "threads": 0})"));
+    "step_bytes": null, "threads": 0, "parallel_from": 1000})"));
 }
 
 TEST(ConfigJson, ComesBackAsItWas) {

@@ -137,6 +137,7 @@ Counts play_all(const SceneRegime& regime) {
         for (const StepStatus status : heard.statuses) ++(status == StepStatus::kDone ? counts.done : counts.refused);
         if (turn % 3 != 0) continue;
         config.executor = make_executor(3);
+        config.parallel_from = 0;
         Heard parallel;
         EXPECT_EQ(play_limited(config, script, regime.steps, turn, parallel), "") << regime.name << ", threads";
         EXPECT_TRUE(heard == parallel) << regime.name << ", turn " << turn << ": threads leave a trace";

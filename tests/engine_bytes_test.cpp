@@ -175,9 +175,11 @@ TEST(EngineBytes, AreWhatTheHeapHoldsWithOtherKeys) {
 TEST(EngineBytes, AreWhatTheHeapHoldsOnThreads) {
   Config config = with_envelopes(true, 4);
   config.executor = make_executor(3);
+  config.parallel_from = 0;
   expect_counted_throughout<ByName, Name>(config, 5000, "names, exact envelopes, 3 threads");
   config = Config{};
   config.executor = make_executor(3);
+  config.parallel_from = 0;
   config.reduction = Reduction::kWitnessCounts;
   expect_counted_throughout<ByNumber, std::uint64_t>(config, 5000, "counts, 3 threads");
 }

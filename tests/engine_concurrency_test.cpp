@@ -23,6 +23,7 @@ TEST(EngineConcurrency, QueueingFromManyThreadsIsTheSameAsFromOne) {
   for (const int threads : {1, 3}) {
     Config config;
     config.threads = threads;
+    config.parallel_from = 0;
     Engine2 engine(config);
     oracle::EngineModel<float, 2> model;
     for (std::uint64_t step = 0; step < 6; ++step) {

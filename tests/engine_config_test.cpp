@@ -25,6 +25,7 @@ TEST(EngineConfig, RefusesWhatIsOutOfRangeAndNamesIt) {
     EXPECT_TRUE(has(refused([&](Config& c) { c.cell_size = size; }), "cell_size"));
   }
   EXPECT_TRUE(has(refused([](Config& c) { c.threads = -1; }), "threads"));
+  EXPECT_TRUE(has(refused([](Config& c) { c.parallel_from = -1; }), "parallel_from"));
   EXPECT_TRUE(has(refused([](Config& c) {
                     c.cell.kind = CellKind::kSegmented;
                     c.cell.segment_capacity = 3;
@@ -47,6 +48,49 @@ TEST(EngineConfig, AGivenCellSizeIsKeptButForBoundedGridsOfTooManyCells) {
     } else {
       EXPECT_GE(engine.stats().cell_size, 100.0 / (1 << 24));
       EXPECT_LT(engine.stats().cell_size, 300.0 / (1 << 24));
+    }
+  }
+}
+
+/// Four workers, it says, and counts what it is given to do.
+class Counting final : public Executor {
+ public:
+  [[nodiscard]] int concurrency() const override { return 4; }
+  [[nodiscard]] int worker() const override { return 3; }
+  void for_each(std::size_t count, const std::function<void(std::size_t)>& body) override {
+    ++loops;
+    for (std::size_t i = 0; i < count; ++i) body(i);
+  }
+  void execute(const std::function<void()>& work) override { work(); }
+  int loops = 0;
+};
+
+TEST(EngineConfig, ASmallStepIsDoneByItsCallerAlone) {
+  for (const StepMethod method : {StepMethod::kCells, StepMethod::kSweep}) {
+    const auto executor = std::make_shared<Counting>();
+    Config config;
+    config.step_method = method;
+    config.executor = executor;
+    config.parallel_from = 100;
+    Engine2 engine(config);
+    const auto loops_of_step = [&](std::uint64_t changes) {
+      for (std::uint64_t key = 0; key < changes; ++key) {
+        const double at = 0.5 * static_cast<double>(key + 1000 * engine.stats().steps);
+        engine.contains(key) ? engine.update(key, square(at, 0)) : static_cast<void>(engine.insert(key, square(at, 0)));
+      }
+      const int before = executor->loops;
+      engine.step();
+      return executor->loops - before;
+    };
+    EXPECT_EQ(loops_of_step(99), 0);
+    EXPECT_EQ(engine.pairs().size(), 98 + 97U);
+    if (method == StepMethod::kCells) {
+      EXPECT_GT(loops_of_step(101), 0);
+      EXPECT_EQ(loops_of_step(50), 0);
+    } else {
+      EXPECT_EQ(loops_of_step(399), 0);
+      EXPECT_GT(loops_of_step(400), 0);
+      EXPECT_GT(loops_of_step(50), 0) << "all are swept";
     }
   }
 }

@@ -146,6 +146,7 @@ class EngineFollows : public ::testing::TestWithParam<FollowCase> {
     config.cell_population = 10;
     config.reduction = reduction;
     config.threads = threads;
+    config.parallel_from = 0;
     return config;
   }
 };

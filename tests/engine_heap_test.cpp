@@ -148,6 +148,7 @@ std::vector<NamedConfig> settings_on_threads() {
     all.push_back(setting);
     all.back().name += ", 3 threads";
     all.back().config.executor = make_executor(3);
+    all.back().config.parallel_from = 0;
   }
   return all;
 }

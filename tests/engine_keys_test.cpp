@@ -23,6 +23,7 @@ template <class Key, class EngineType, class Model>
 void expect_sorted_events_of(const std::vector<Key>& keys) {
   Config config;
   config.threads = 2;
+  config.parallel_from = 0;
   EngineType engine(config);
   Model model;
   oracle::Random random(3);
@@ -137,6 +138,7 @@ TEST(EngineKeys, NeedNeitherADefaultConstructorNorAssignment) {
   for (const int threads : {1, 3}) {
     Config config;
     config.threads = threads;
+    config.parallel_from = 0;
     Engine<float, 2, Ticket, TicketHash> engine(config);
     std::vector<Ticket> tickets;
     std::vector<Box2> boxes;
@@ -196,6 +198,7 @@ TEST(EngineKeys, WhoseOrderTiesAreRefusedByNameAndTheStepIsTakenBack) {
     for (const int threads : {1, 3}) {
       Config config;
       config.threads = threads;
+      config.parallel_from = 0;
       config.reduction = reduction;
       Engine<float, 2, int, std::hash<int>, ByTens> engine(config);
       engine.insert(10, square(0, 0));

@@ -61,6 +61,7 @@ template <class Scalar, int Dim>
 Played play(const Regime& regime, ClientMode::Kind kind, Where where, int threads, bool margins) {
   Config config;
   config.threads = threads;
+  config.parallel_from = 0;
   if (margins) config.envelope.emplace().margin = 0.5, config.envelope->exact = true;
   if (where == Where::kCaller) config.executor = make_executor(threads);
   if (where == Where::kOwnThreads) config.executor = std::make_shared<ThreadsInMode>(kind);
@@ -181,6 +182,7 @@ TEST(EngineModes, NaNAndInvertedDenormalBoxesAreRefusedByEveryCall) {
       for (const bool margins : {false, true}) {
         Config config;
         config.threads = 2;
+        config.parallel_from = 0;
         if (margins) config.envelope.emplace().margin = 0.5;
         const ClientMode mode(kind);
         Engine<float, 3> engine(config);

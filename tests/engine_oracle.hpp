@@ -118,6 +118,7 @@ struct GridChoice {
     config.reduction = reduction;
     config.step_method = method;
     config.executor = std::move(executor);
+    config.parallel_from = 0;
     return config;
   }
 

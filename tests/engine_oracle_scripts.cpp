@@ -11,6 +11,7 @@ std::string play_script(const Regime& regime, std::size_t turn) {
     config.cell.kind = kind;
     config.cell_population = turn % 2 == 0 ? 2 : 20;
     config.threads = turn % 3 == 0 ? 3 : 1;
+    config.parallel_from = turn % 2 == 0 ? 0 : 1000;
     config.reduction = kReductions[turn / 2 % 2];
     const std::string wrong =
         play<Scalar, Dim>(config, CellScript<Scalar, Dim>(regime, turn), regime.drains, kCalls[turn % kCalls.size()]);

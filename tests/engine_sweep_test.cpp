@@ -34,6 +34,7 @@ Config config_of(StepMethod method, int threads = 1) {
   Config config;
   config.step_method = method;
   config.threads = threads;
+  config.parallel_from = 0;
   return config;
 }
 

@@ -27,6 +27,7 @@ using Engine2 = Engine<double, 2>;
 Engine2 engine_with(const EnvelopeOptions& options, int threads = 1) {
   Config config;
   config.threads = threads;
+  config.parallel_from = 0;
   config.envelope = options;
   return Engine2(config);
 }

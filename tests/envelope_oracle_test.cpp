@@ -91,6 +91,7 @@ std::string play_script(const Regime& regime, std::size_t turn) {
     config.cell.kind = kKinds[turn % kKinds.size()];
     config.cell_population = turn % 2 == 0 ? 2 : 20;
     config.threads = turn % 3 == 0 ? 3 : 1;
+    config.parallel_from = 0;
     config.reduction = kReductions[turn / 2 % 2];
     const bool wide = setting.options.margin > 5 || setting.options.margin_steps > 0 || setting.options.swept;
     if (wide) config.reduction = Reduction::kSingleReporter;  // for there, wide boxes are in few cells
@@ -126,6 +127,7 @@ TEST(EnvelopeThreads, LeaveNoTrace) {
         if (kind == CellKind::kSegmented && threads != 2) continue;
         Config config;
         config.threads = threads;
+        config.parallel_from = 0;
         config.cell.kind = kind;
         config.envelope = setting.options;
         Engine<float, 2> engine(config);

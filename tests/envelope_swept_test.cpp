@@ -146,6 +146,7 @@ Config config_of(std::size_t turn, const EnvelopeOptions& options) {
   config.cell.kind = kKinds[turn % kKinds.size()];
   config.reduction = turn % 3 == 0 ? Reduction::kWitnessCounts : Reduction::kSingleReporter;
   config.threads = turn % 2 == 0 ? 1 : 2;
+  config.parallel_from = 0;
   config.envelope = options;
   return config;
 }
@@ -207,6 +208,7 @@ TEST(Swept, AnObjectThatStopsShrinksByItself) {
   for (const int threads : {1, 2}) {
     Config config;
     config.threads = threads;
+    config.parallel_from = 0;
     config.envelope = EnvelopeOptions{.swept = true};
     Engine<float, 2> engine(config);
     const Handle flies = engine.insert(1, {{0, 0}, {1, 1}});

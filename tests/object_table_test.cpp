@@ -1,7 +1,9 @@
 // Objects by id, keys by object, and the arrays that both lie in.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdint>
+#include <functional>
 #include <set>
 #include <span>
 #include <stdexcept>
@@ -137,7 +139,7 @@ TEST(ObjectTable, ASampleIsOfAllThatAreNotErased) {
   const auto sixteenth = std::count_if(all.begin(), all.end(), [](ObjectId object) { return object % 16 == 0; });
   EXPECT_GT(sixteenth, 5);
   EXPECT_LT(sixteenth, 40);
-  for (int quarter = 0; quarter < 4; ++quarter) {
+  for (ObjectId quarter = 0; quarter < 4; ++quarter) {
     const auto in_quarter = std::count_if(all.begin(), all.end(), [&](ObjectId o) { return o / 1250 == quarter; });
     EXPECT_NEAR(static_cast<double>(in_quarter), 64, 2);
   }
@@ -147,6 +149,27 @@ TEST(ObjectTable, ASampleIsOfAllThatAreNotErased) {
   EXPECT_EQ(sample().size(), 256u);
   room.resize(1000);
   EXPECT_EQ(sample().size(), 300u);
+}
+
+TEST(GranuleMarks, AreFoundInOrderUntilTheyAreTakenAway) {
+  GranuleMarks marks;
+  const auto marked = [&](std::uint32_t granules) {
+    std::vector<std::uint32_t> found;
+    marks.for_each(granules, [&](std::uint32_t granule) { found.push_back(granule); });
+    return found;
+  };
+  marks.grow(1000);
+  EXPECT_EQ(marked(1000), std::vector<std::uint32_t>{});
+  for (const std::uint32_t granule : {999U, 0U, 63U, 64U, 640U, 63U}) marks.mark(granule);
+  EXPECT_EQ(marked(1000), (std::vector<std::uint32_t>{0, 63, 64, 640, 999}));
+  EXPECT_EQ(marked(640), (std::vector<std::uint32_t>{0, 63, 64}));
+  marks.unmark(63);
+  marks.unmark(640);
+  for (int twice = 0; twice < 2; ++twice) EXPECT_EQ(marked(1000), (std::vector<std::uint32_t>{0, 64, 999}));
+  marks.mark(641);
+  marks.grow(5000);
+  marks.mark(4999);
+  EXPECT_EQ(marked(5000), (std::vector<std::uint32_t>{0, 64, 641, 999, 4999}));
 }
 
 TEST(ObjectTable, AnIdIsNotReusedInTheStepThatErasesIt) {

@@ -69,6 +69,7 @@ struct StageGraph::Impl {
   std::optional<oneapi::tbb::flow::graph> graph;
   std::vector<std::unique_ptr<Stage>> stages;
   bool recording = false;
+  bool alone = false;  ///< in this run
   TaskTrace trace;
 
   [[nodiscard]] std::int64_t now() const {
@@ -106,14 +107,19 @@ void StageGraph::Impl::run_tasks(Stage& stage) {
   } else {
     stage.order.assign_descending(stage.costs);
   }
-  executor->for_each(stage.order.size(), stage.run_place);
+  if (alone) {
+    for (std::size_t place = 0; place < stage.order.size(); ++place) stage.run_place(place);
+  } else {
+    executor->for_each(stage.order.size(), stage.run_place);
+  }
 }
 
 void StageGraph::Impl::run_recorded(StageId id, std::uint32_t task) {
   Stage& stage = *stages[id];
   const std::int64_t begin = now();
   stage.body(task);
-  stage.records[task] = {id, task, stage.costs[task], executor->worker(), begin - start, since(begin)};
+  const int worker = alone ? 0 : executor->worker();
+  stage.records[task] = {id, task, stage.costs[task], worker, begin - start, since(begin)};
 }
 
 /// Keeps the exception that is being handled, if it is the first of the run.
@@ -181,8 +187,9 @@ StageGraph::StageId StageGraph::add(std::string name, const std::vector<StageId>
   return id;
 }
 
-void StageGraph::run() {
+void StageGraph::run(bool alone) {
   Impl& impl = *impl_;
+  impl.alone = alone;
   for (const auto& stage : impl.stages) {
     stage->costs.clear();
     stage->records.clear();
@@ -197,7 +204,7 @@ void StageGraph::run() {
   impl.failure = nullptr;
   impl.start = impl.now();
 
-  if (impl.graph) {
+  if (impl.graph && !alone) {
     impl.executor->execute([&impl] { impl.run_graph(); });
   } else {
     // Stages wait only for earlier ones, so the order of adding is a topological one.

@@ -43,6 +43,7 @@ bool play(const char* what) {
   for (const int threads : {1, 3}) {
     sweepgrid::Config config;
     config.threads = threads;
+    config.parallel_from = 0;
     Engine engine(config);
     clients::Scene<Scalar, Dim> scene({"moving", 100, 30, clients::Unit::kQuarter, 80, 10, true}, 5);
     std::uint64_t next = 0;

@@ -65,6 +65,7 @@ struct Trial {
       for (const bool margins : {false, true}) {
         sweepgrid::Config config;
         config.threads = threads;
+        config.parallel_from = 0;
         if (margins) config.envelope.emplace().margin = 0.5;
         Engine engine(config);
         const Box good({0, 0, 0}, {1, 1, 1});

@@ -130,6 +130,7 @@ bool play_all(const char* scalar) {
       Digests digests[2];
       for (int turn = 0; turn < 2; ++turn) {
         config.threads = turn == 0 ? 1 : 3;
+        config.parallel_from = 0;
         digests[turn] = play<Scalar, Dim>(regime, config, !margins);
       }
       right &= report(scalar, Dim, regime.name, margins ? " with margins" : "", digests[0], digests[1]);

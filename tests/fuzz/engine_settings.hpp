@@ -72,6 +72,7 @@ Config settings(Input& input, oracle::Palette palette, bool may_have_envelope) {
   const auto executor = shared_executor(threads < 2 ? 1 : static_cast<int>(threads));
   Config config = oracle::kGrids[grid].config<Dim>(kind, executor, reduction);
   config.cell.integration = static_cast<Integration>(integration);
+  config.parallel_from = integration == 1 ? 1000 : 0;
   config.envelope = envelope;
   config.step_bytes = step_bytes(input);
   return config;

@@ -163,6 +163,7 @@ class Twins {
   static Config config(std::shared_ptr<Executor> executor, StepMethod method) {
     Config config;
     config.executor = std::move(executor);
+    config.parallel_from = 0;
     config.step_method = method;
     config.cell_size = 4;
     return config;

@@ -32,6 +32,7 @@ Config config_of(CellKind kind, Reduction reduction, double cell_size) {
   config.step_method = StepMethod::kCells;  // small scenes would be swept
   if (kind == CellKind::kBatch) {
     config.executor = std::make_shared<Backwards>();
+    config.parallel_from = 0;
   } else {
     config.threads = 1;
   }
@@ -62,6 +63,7 @@ constexpr oracle::SceneRegime kFleeting{
 /// Many come at once, and few move: everybody else is carried to the new cells, a slice in each step.
 int probe_following(Config config) {
   config.executor = std::make_shared<Backwards>();
+  config.parallel_from = 0;
   TestEngine engine(config);
   Client client;
   oracle::Random random(1);

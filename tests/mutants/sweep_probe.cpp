@@ -16,6 +16,7 @@ Config config_of(StepMethod method, bool many_workers) {
   config.step_method = method;
   if (many_workers) {
     config.executor = std::make_shared<Backwards>();
+    config.parallel_from = 0;
   } else {
     config.threads = 1;
   }

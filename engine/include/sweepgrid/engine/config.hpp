@@ -57,6 +57,10 @@ struct Config {
   /// Where the step runs; absent: `threads` workers of the engine's own (0: as many as the machine has; 1: none).
   std::shared_ptr<Executor> executor;
   int threads = 0;
+  /// Calls that a step must apply to be shared among workers, not negative: to wake them takes as long as one worker
+  /// takes for some hundred calls. Steps that apply fewer, and sweeps of fewer than four times as many objects, are
+  /// done by the thread that calls step(). Whether they are is judged by counts, a sample of them where there are many.
+  int parallel_from = 1000;
 };
 
 }  // namespace sweepgrid

@@ -104,7 +104,8 @@ void to_json(BasicJson& json, const Config& config) {
           {"step_method", json_members::name_of(config.step_method)},
           {"envelope", json_members::optional_json<BasicJson>(config.envelope)},
           {"step_bytes", json_members::optional_json<BasicJson>(config.step_bytes)},
-          {"threads", config.threads}};
+          {"threads", config.threads},
+          {"parallel_from", config.parallel_from}};
 }
 
 template <class BasicJson>
@@ -120,6 +121,7 @@ void from_json(const BasicJson& json, Config& config) {
   members.read("envelope", read.envelope);
   members.read("step_bytes", read.step_bytes, std::uint64_t{0});
   members.read("threads", read.threads, 0, 65536);
+  members.read("parallel_from", read.parallel_from, 0);
   members.finish();
   config = std::move(read);
 }

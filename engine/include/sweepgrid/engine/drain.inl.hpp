@@ -37,10 +37,9 @@ void EngineCore<Scalar, Dim>::plan_gather(std::vector<std::uint64_t>& costs) {
   std::uint64_t calls = 0;
   for (const RouteBlock& block : blocks_) calls += block.calls;
   counters_.cell_ops = calls;
-  const auto workers = static_cast<std::uint64_t>(executor_->concurrency());
   const std::uint64_t work = 16 * calls;
-  task_cost_ = workers == 1 ? ~std::uint64_t{0}
-                            : std::max(engine_core::kSmallestTask, work / (engine_core::kTasksPerWorker * workers));
+  task_cost_ = workers() == 1 ? ~std::uint64_t{0}
+                              : std::max(engine_core::kSmallestTask, work / (engine_core::kTasksPerWorker * workers()));
 }
 
 template <class Scalar, int Dim>

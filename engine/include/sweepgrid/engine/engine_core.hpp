@@ -97,12 +97,15 @@ class EngineCore {
 
   [[nodiscard]] bool counting() const { return config_.reduction == Reduction::kWitnessCounts; }
 
+  void prepare_step();
+  [[nodiscard]] bool little_to_do() const;
+  [[nodiscard]] std::size_t workers() const;
+  [[nodiscard]] std::size_t worker() const;
   void plan_bin(std::vector<std::uint64_t>& costs);
   void bin(std::size_t block);
   void plan_sweep(std::vector<std::uint64_t>& costs);
   void sweep(std::size_t part);
   [[nodiscard]] bool choose_sweep();
-  void list_marked();
   [[nodiscard]] std::size_t estimated_changes() const;
   void plan_route(std::vector<std::uint64_t>& costs);
   void route(std::size_t block);
@@ -170,6 +173,8 @@ class EngineCore {
   SceneSweep<Scalar, Dim> sweep_;
   MethodChoice method_;
   StepList<std::uint32_t> marked_;  // granules that the step looks at
+  std::size_t changes_ = 0;         // that the step applies, estimated
+  bool alone_ = false;              // the step that runs is the calling thread's alone
   StepItems<RouteBlock> blocks_;
   StepItems<GatherTask> gathers_;
   std::uint64_t task_cost_ = 1;

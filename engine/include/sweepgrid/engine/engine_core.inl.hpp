@@ -34,6 +34,9 @@ void require_valid(const Config& config) {
   if (config.cell_size && !(*config.cell_size > 0 && std::isfinite(*config.cell_size))) {
     refuse("cell_size is " + std::to_string(*config.cell_size) + ", but must be positive and finite");
   }
+  if (config.parallel_from < 0) {
+    refuse("parallel_from is " + std::to_string(config.parallel_from) + ", but must not be negative");
+  }
   if (config.threads < 0) refuse("threads is " + std::to_string(config.threads) + ", but must not be negative");
   static_cast<void>(make_cell<Scalar, Dim>(config.cell));  // refuses bad cell options
 }
@@ -91,7 +94,8 @@ bool EngineCore<Scalar, Dim>::run_step() {
   } else {
     budget_.start(config_.step_bytes.value_or(StepBudget::kUnlimited));
     try {
-      graph_->run();
+      prepare_step();
+      graph_->run(alone_);
       finish_step();
     } catch (const OverBudget&) {
       take_back_step();
@@ -103,6 +107,51 @@ bool EngineCore<Scalar, Dim>::run_step() {
     }
   }
   return true;
+}
+
+// What is known before the stages: which way the step goes, and who is to do it.
+template <class Scalar, int Dim>
+void EngineCore<Scalar, Dim>::prepare_step() {
+  pass_idle_steps();
+  marked_.restart();
+  objects_.for_each_marked([&](std::uint32_t granule) { marked_.items.push_back(granule); });
+  changes_ = estimated_changes();
+  sweeping_ = choose_sweep();
+  alone_ = executor_->concurrency() > 1 && little_to_do();
+}
+
+// Judged by every 16th of the granules with a mark; in the others nothing has changed.
+template <class Scalar, int Dim>
+std::size_t EngineCore<Scalar, Dim>::estimated_changes() const {
+  const std::vector<std::uint32_t>& marked = marked_.items;
+  std::size_t seen = 0;
+  std::size_t changed = 0;
+  for (std::size_t i = 0; i < marked.size(); i += 16) {
+    const ObjectId first = marked[i] * Objects::kGranule;
+    const ObjectId end = std::min(objects_.bound() - first, Objects::kGranule) + first;
+    for (ObjectId object = first; object < end; ++object) {
+      changed += (objects_.state(object) & Objects::kQueued) != 0 ? 1 : 0;
+    }
+    ++seen;
+  }
+  return seen == 0 ? 0 : changed * marked.size() / seen;
+}
+
+template <class Scalar, int Dim>
+bool EngineCore<Scalar, Dim>::little_to_do() const {
+  const auto much = static_cast<std::size_t>(config_.parallel_from);
+  if (sweeping_) return objects_.size() < 4 * much;
+  return celled_ && changes_ < much;
+}
+
+// Of the step that runs.
+template <class Scalar, int Dim>
+std::size_t EngineCore<Scalar, Dim>::workers() const {
+  return alone_ ? 1 : static_cast<std::size_t>(executor_->concurrency());
+}
+template <class Scalar, int Dim>
+std::size_t EngineCore<Scalar, Dim>::worker() const {
+  return alone_ ? 0 : static_cast<std::size_t>(executor_->worker());
 }
 
 template <class Scalar, int Dim>

@@ -14,6 +14,7 @@
 
 #include <sweepgrid/engine/envelope_box.hpp>
 #include <sweepgrid/engine/envelope_options.hpp>
+#include <sweepgrid/engine/granule_marks.hpp>
 #include <sweepgrid/engine/handle.hpp>
 #include <sweepgrid/engine/object_speed.hpp>
 #include <sweepgrid/engine/object_table.hpp>
@@ -192,7 +193,7 @@ class Envelopes {
   double fade_;  // of speeds
   StableVector<Record> records_;
   StableVector<std::uint16_t> states_;
-  StableVector<std::uint8_t> marks_;  // by granule
+  GranuleMarks marks_;
   // exact: the box of the latest step, of what has changed. swept: the other end of the way.
   StableVector<BoxType> others_;
   StableVector<ObjectSpeed> speeds_;  // with margin_steps

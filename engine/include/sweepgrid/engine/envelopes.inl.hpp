@@ -45,9 +45,6 @@ void Envelopes<Scalar, Dim>::make_room(std::uint64_t bound) {
   if (bound <= old_bound) return;
   const std::uint64_t ends = (bound + kGranule - 1) / kGranule * kGranule;  // so that the lock is not taken for each
   marks_.grow(ends / kGranule);
-  for (std::uint64_t granule = old_bound / kGranule; granule < ends / kGranule; ++granule) {
-    marks_[static_cast<std::uint32_t>(granule)] = 0;
-  }
   states_.grow(ends);
   for (std::uint64_t object = old_bound; object < ends; ++object) states_[static_cast<ObjectId>(object)] = 0;
   if (options_.exact || options_.swept) others_.grow(ends);
@@ -72,8 +69,7 @@ void Envelopes<Scalar, Dim>::insert(Handle object, const BoxType& box, const Box
 
 template <class Scalar, int Dim>
 void Envelopes<Scalar, Dim>::mark(ObjectId object) {
-  const std::atomic_ref<std::uint8_t> granule(marks_[object / kGranule]);
-  if (granule.load(std::memory_order_relaxed) == 0) granule.store(1, std::memory_order_relaxed);
+  marks_.mark(object / kGranule);
   if (!marked_.load(std::memory_order_relaxed)) marked_.store(true, std::memory_order_relaxed);
 }
 
@@ -171,7 +167,7 @@ void Envelopes<Scalar, Dim>::end_step(Executor& executor) {
   for (const Block& block : blocks()) margin = std::max(margin, block.margin);
   if (margin >= 0) report_.margin = margin;
   if (!early_) {  // else others are still to be looked at
-    for (const std::uint32_t granule : granules_) marks_[granule] = 0;
+    for (const std::uint32_t granule : granules_) marks_.unmark(granule);
     marked_.store(false, std::memory_order_relaxed);
   }
   for_blocks(executor, [this](std::size_t block) {
@@ -220,9 +216,8 @@ void Envelopes<Scalar, Dim>::recycle() {
 
 template <class Scalar, int Dim>
 void Envelopes<Scalar, Dim>::collect_granules() {
-  for (std::uint32_t granule = 0; granule < bound() / kGranule; ++granule) {
-    if (marks_[granule] != 0) granules_.push_back(granule);
-  }
+  marks_.for_each(static_cast<std::uint32_t>(bound() / kGranule),
+                  [&](std::uint32_t granule) { granules_.push_back(granule); });
 }
 
 // Calls `visit(object, block)` for the objects in marked granules that are to be looked at.
@@ -341,7 +336,7 @@ void Envelopes<Scalar, Dim>::validate(const Objects& objects) const {
                                      [&](Handle handle) { return handle.index == object; });
     require_invariant(outside || holds(record.envelope, record.box), "V1",
                       [&] { return name() + " has left its envelope, and nobody says so"; });
-    require_invariant((state & (kFresh | kMoved | kStretched)) == 0 || marks_[object / kGranule] != 0, "V1",
+    require_invariant((state & (kFresh | kMoved | kStretched)) == 0 || marks_.marked(object / kGranule), "V1",
                       [&] { return name() + " is to be looked at, but not marked"; });
   }
 }

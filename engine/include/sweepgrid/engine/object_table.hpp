@@ -13,6 +13,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include <sweepgrid/engine/granule_marks.hpp>
 #include <sweepgrid/engine/handle.hpp>
 #include <sweepgrid/engine/item_partition.hpp>
 #include <sweepgrid/engine/stable_vector.hpp>
@@ -148,8 +149,13 @@ class ObjectTable {
   [[nodiscard]] static std::uint32_t granules_of(ObjectId bound) {  // without a sum that could overflow
     return bound / kGranule + (bound % kGranule != 0 ? 1 : 0);
   }
-  [[nodiscard]] bool granule_marked(std::uint32_t granule) const { return marks_[granule] != 0; }
-  void unmark_granule(std::uint32_t granule) { marks_[granule] = 0; }
+  [[nodiscard]] bool granule_marked(std::uint32_t granule) const { return marks_.marked(granule); }
+  void unmark_granule(std::uint32_t granule) { marks_.unmark(granule); }
+  /// Calls `visit(granule)` for every one that is marked, in their order. O(granules that are marked + granules / 64).
+  template <class Visit>
+  void for_each_marked(Visit&& visit) {
+    marks_.for_each(granules(), visit);
+  }
   /// What was queued for the objects of a granule is done, but for retire().
   void settle(std::uint32_t granule) {
     if (!granule_marked(granule)) return;
@@ -234,11 +240,7 @@ class ObjectTable {
     std::atomic_ref(records_[object].generation).store(generation, std::memory_order_relaxed);
   }
 
-  // Neighbours of different threads share a granule, so this is atomic; checked first to keep the line shared.
-  [[gnu::always_inline]] void mark_granule(std::uint32_t granule) {
-    const std::atomic_ref<std::uint8_t> mark(marks_[granule]);
-    if (mark.load(std::memory_order_relaxed) == 0) mark.store(1, std::memory_order_relaxed);
-  }
+  [[gnu::always_inline]] void mark_granule(std::uint32_t granule) { marks_.mark(granule); }
   void something_queued() {
     if (!queued_.load(std::memory_order_relaxed)) queued_.store(true, std::memory_order_relaxed);
   }
@@ -286,7 +288,7 @@ class ObjectTable {
 
   StableVector<Record> records_;
   StableVector<std::uint8_t> states_;
-  StableVector<std::uint8_t> marks_;  // by granule
+  GranuleMarks marks_;
   std::atomic<ObjectId> bound_ = 0;
   std::atomic<std::size_t> live_ = 0;
   std::atomic<bool> queued_ = false;

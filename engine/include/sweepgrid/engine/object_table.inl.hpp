@@ -260,9 +260,6 @@ ObjectId ObjectTable<Scalar, Dim>::extend(std::size_t count) {
   states_.grow(end);
   marks_.grow((end - 1) / kGranule + std::uint64_t{1});
   for (ObjectId object = first; object < end; ++object) states_[object] = 0;  // stale handles may be tried
-  for (std::uint64_t granule = granules_of(first); granule <= (end - 1) / kGranule; ++granule) {
-    marks_[static_cast<std::uint32_t>(granule)] = 0;
-  }
   trim_at_ = end / 4;
   bound_.store(end, std::memory_order_release);
   return first;

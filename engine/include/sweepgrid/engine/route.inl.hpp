@@ -35,18 +35,15 @@ void EngineCore<Scalar, Dim>::plan_route(std::vector<std::uint64_t>& costs) {
     marked.resize(objects_.granules());
     std::iota(marked.begin(), marked.end(), 0);
   }
-  const auto workers = static_cast<std::size_t>(executor_->concurrency());
-  const bool small = workers == 1 || marked.size() < 8;
-  const std::size_t wanted = small ? 1 : std::min(marked.size(), engine_core::kBlocksPerWorker * workers);
+  const bool small = workers() == 1 || marked.size() < 8;
+  const std::size_t wanted = small ? 1 : std::min(marked.size(), engine_core::kBlocksPerWorker * workers());
   blocks_.restart();
   for (std::size_t b = 0; b < wanted; ++b) {
     RouteBlock& block = blocks_.add();
     block.restart();
-    const std::size_t first = b * marked.size() / wanted;
-    const std::size_t end = (b + 1) * marked.size() / wanted;
-    block.first_granule = marked[first];
-    block.last_granule = marked[end - 1];
-    costs.push_back(end - first);
+    block.first = b * marked.size() / wanted;
+    block.last = (b + 1) * marked.size() / wanted;
+    costs.push_back(block.last - block.first);
   }
   for (const GridIndex grid : levels_.live()) levels_.grid(grid).begin_step(wanted, &budget_);
 }
@@ -54,10 +51,7 @@ void EngineCore<Scalar, Dim>::plan_route(std::vector<std::uint64_t>& costs) {
 template <class Scalar, int Dim>
 void EngineCore<Scalar, Dim>::route(std::size_t block) {
   RouteBlock& out = blocks_[block];
-  for (std::uint32_t granule = out.first_granule; granule <= out.last_granule; ++granule) {
-    if (!regridding_ && !objects_.granule_marked(granule)) continue;
-    route_granule(block, granule);
-  }
+  for (std::size_t i = out.first; i < out.last; ++i) route_granule(block, marked_.items[i]);
   for (const GridIndex grid : levels_.live()) {
     levels_.grid(grid).end_block(block);
     out.calls += levels_.grid(grid).calls(block);

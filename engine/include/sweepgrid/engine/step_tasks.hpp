@@ -18,8 +18,9 @@ namespace sweepgrid::step_tasks {
 
 /// A block of objects as it is routed.
 struct Route {
-  std::uint32_t first_granule = 0;
-  std::uint32_t last_granule = 0;
+  // Of the granules that the step looks at: [first, last).
+  std::size_t first = 0;
+  std::size_t last = 0;
   StepCounters counters;
   std::uint64_t calls = 0;
   StepList<ObjectId> retired;

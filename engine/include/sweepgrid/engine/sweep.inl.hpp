@@ -14,59 +14,31 @@ bool EngineCore<Scalar, Dim>::choose_sweep() {
   const bool rows = config_.cell.kind == CellKind::kRows || config_.cell.kind == CellKind::kAuto;
   if (!SceneSweep<Scalar, Dim>::kPossible || counting() || !rows) return false;
   if (config_.step_method != StepMethod::kAuto) return config_.step_method == StepMethod::kSweep;
-  return method_.sweep(estimated_changes(), objects_.size(), celled_ && gridded_);
-}
-
-template <class Scalar, int Dim>
-void EngineCore<Scalar, Dim>::list_marked() {
-  marked_.restart();
-  for (std::uint32_t granule = 0; granule < objects_.granules(); ++granule) {
-    if (objects_.granule_marked(granule)) marked_.items.push_back(granule);
-  }
-}
-
-// Judged by every 16th of the granules with a mark; in the others nothing has changed.
-template <class Scalar, int Dim>
-std::size_t EngineCore<Scalar, Dim>::estimated_changes() const {
-  const std::vector<std::uint32_t>& marked = marked_.items;
-  std::size_t seen = 0;
-  std::size_t changed = 0;
-  for (std::size_t i = 0; i < marked.size(); i += 16) {
-    const ObjectId first = marked[i] * Objects::kGranule;
-    const ObjectId end = std::min(objects_.bound() - first, Objects::kGranule) + first;
-    for (ObjectId object = first; object < end; ++object) {
-      changed += (objects_.state(object) & Objects::kQueued) != 0 ? 1 : 0;
-    }
-    ++seen;
-  }
-  return seen == 0 ? 0 : changed * marked.size() / seen;
+  return method_.sweep(changes_, objects_.size(), celled_ && gridded_);
 }
 
 template <class Scalar, int Dim>
 void EngineCore<Scalar, Dim>::plan_bin(std::vector<std::uint64_t>& costs) {
-  pass_idle_steps();
-  list_marked();
-  sweeping_ = choose_sweep();
   if constexpr (SceneSweep<Scalar, Dim>::kPossible) {
-    if (sweeping_) sweep_.plan_bin(static_cast<std::size_t>(executor_->concurrency()), costs);
+    if (sweeping_) sweep_.plan_bin(workers(), costs);
   }
 }
 
 template <class Scalar, int Dim>
 void EngineCore<Scalar, Dim>::bin(std::size_t block) {
-  if constexpr (SceneSweep<Scalar, Dim>::kPossible) sweep_.bin(block, static_cast<std::size_t>(executor_->worker()));
+  if constexpr (SceneSweep<Scalar, Dim>::kPossible) sweep_.bin(block, worker());
 }
 
 template <class Scalar, int Dim>
 void EngineCore<Scalar, Dim>::plan_sweep(std::vector<std::uint64_t>& costs) {
   if constexpr (SceneSweep<Scalar, Dim>::kPossible) {
-    if (sweeping_) sweep_.plan_sweep(static_cast<std::size_t>(executor_->worker()), costs);
+    if (sweeping_) sweep_.plan_sweep(worker(), costs);
   }
 }
 
 template <class Scalar, int Dim>
 void EngineCore<Scalar, Dim>::sweep(std::size_t part) {
-  if constexpr (SceneSweep<Scalar, Dim>::kPossible) sweep_.sweep(part, static_cast<std::size_t>(executor_->worker()));
+  if constexpr (SceneSweep<Scalar, Dim>::kPossible) sweep_.sweep(part, worker());
 }
 
 template <class Scalar, int Dim>

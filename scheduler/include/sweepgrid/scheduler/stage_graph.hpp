@@ -37,7 +37,10 @@ class StageGraph {
   /// steal. The first exception of a plan or body is rethrown after running tasks ended; stages that had not
   /// started are skipped, the trace is empty, and the graph can be run again: nothing of a run that failed is left.
   /// Beside that it throws only what allocation throws.
-  void run();
+  ///
+  /// `alone`: the calling thread does all of it, outside of the executor's arena; for so little work that to wake a
+  /// worker would take longer. What a plan or body asks of the executor by itself goes there all the same.
+  void run(bool alone = false);
 
   /// Whether run() keeps a record of every task. Off at first, and free when off.
   void record(bool on);
