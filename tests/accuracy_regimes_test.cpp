@@ -26,7 +26,7 @@ namespace {
 constexpr std::uint64_t kObjects = 500;
 constexpr std::uint64_t kSteps = 8;
 
-/// What a step did, in about nanoseconds: exact counts by what each takes, as `KindChoice` weighs them. The same on
+/// What a step did, in about nanoseconds: exact counts by what each takes. The same on
 /// every machine, so it may decide a test.
 double work_of(const StepCounters& step) {
   const auto sum = [](double weight, auto... counts) { return weight * static_cast<double>((counts + ...)); };

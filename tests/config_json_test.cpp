@@ -47,7 +47,7 @@ TEST(ConfigJson, TellsEveryMember) {
                  "on_violation": "query", "exact": true},
     "step_bytes": 10000000000, "threads": 3, "parallel_from": 17})"));
   EXPECT_EQ(Json(Config{}), Json::parse(R"({
-    "cell": {"kind": "auto", "segment_capacity": 32, "integration": "auto"},
+    "cell": {"kind": "rows", "segment_capacity": 32, "integration": "auto"},
     "cell_size": null, "cell_population": null, "reduction": "reporter", "step_method": "auto", "envelope": null,
     "step_bytes": null, "threads": 0, "parallel_from": 1000})"));
 }

@@ -227,35 +227,5 @@ TEST(EngineFollowsTheFew, WhoRestsGetsNewCellsLikeTheOthers) {
   }
 }
 
-// Cells change their kind while they are used, and pairs are the same.
-TEST(EngineFollowsTheFew, ACrowdedCellChangesItsKindAndBack) {
-  Config config;
-  config.cell.kind = CellKind::kAuto;
-  config.step_method = StepMethod::kCells;
-  config.cell_size = 1000;
-  config.threads = 1;
-  Engine2 engine(config);
-  EngineModel<float, 2> model;
-  Random random(4);
-  const int most = 900;
-  for (int step = 0; step < 60; ++step) {
-    Ops ops;
-    for (int i = 0; i < most; ++i) {
-      const auto key = static_cast<std::uint64_t>(i);
-      const float x = static_cast<float>(i * 37 % 2000) / 10 + static_cast<float>(random.below(10)) / 100;
-      const Box2 box({x, x}, {x + 0.5F, x + 0.5F});
-      if (step == 0) ops.push_back({OpKind::kInsert, key, box});
-      if (step > 0 && step <= 50 && random.percent(4)) ops.push_back({OpKind::kUpdate, key, box});
-      if (step == 51 && i >= 100) ops.push_back({OpKind::kErase, key, {}});
-      if (step > 51 && i < 100) ops.push_back({OpKind::kUpdate, key, box});
-    }
-    queue(engine, ops, Calls::kByKey);
-    model.apply(ops);
-    ASSERT_EQ(difference(model.step(), engine.step()), "") << "step " << step;
-    ASSERT_EQ(compare(engine, model), "") << "step " << step;
-  }
-  EXPECT_GE(engine.stats().total.cells.kinds_changed, 2u);
-}
-
 }  // namespace
 }  // namespace sweepgrid::oracle::engine_follow_test

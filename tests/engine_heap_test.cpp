@@ -95,7 +95,6 @@ TEST(Heap, NorDoesOneOfCrowdedCells) {
   for (NamedConfig& setting : settings()) {
     setting.config.cell_size = 1000;
     setting.config.step_method = StepMethod::kCells;
-    if (setting.config.cell.kind == CellKind::kAuto) continue;  // now and then tries another kind
     for (const std::uint64_t stride : {1, 10}) {
       EXPECT_EQ(allocations_of_steps(setting.config, crowd, stride, 5, 15), 0) << setting.name << ", " << stride;
     }

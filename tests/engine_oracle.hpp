@@ -141,9 +141,9 @@ inline constexpr std::array kGrids{
     GridChoice{.name = "huge cells", .cell_size = 1e9, .method = StepMethod::kCells},
 };
 
-inline constexpr std::array kKinds{CellKind::kRows,    CellKind::kBatch, CellKind::kSegmented,
-                                   CellKind::kClassic, CellKind::kPlane, CellKind::kAuto};
-inline constexpr std::array<const char*, 6> kKindNames{"rows", "batch", "segmented", "classic", "plane", "auto"};
+inline constexpr std::array kKinds{CellKind::kRows, CellKind::kBatch, CellKind::kSegmented, CellKind::kClassic,
+                                   CellKind::kPlane};
+inline constexpr std::array<const char*, 5> kKindNames{"rows", "batch", "segmented", "classic", "plane"};
 inline constexpr std::array kReductions{Reduction::kSingleReporter, Reduction::kWitnessCounts};
 inline constexpr std::array<const char*, 2> kReductionNames{"single reporters", "witness counts"};
 inline constexpr std::array kStepMethods{StepMethod::kAuto, StepMethod::kSweep, StepMethod::kCells};

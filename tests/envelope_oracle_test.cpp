@@ -123,7 +123,7 @@ TEST(EnvelopeThreads, LeaveNoTrace) {
     if (setting.options.margin > 10) continue;  // too many pairs
     std::vector<Events<std::uint64_t>> expected;
     for (const int threads : {1, 2, 8}) {
-      for (const CellKind kind : {CellKind::kAuto, CellKind::kSegmented}) {
+      for (const CellKind kind : {CellKind::kRows, CellKind::kSegmented}) {
         if (kind == CellKind::kSegmented && threads != 2) continue;
         Config config;
         config.threads = threads;

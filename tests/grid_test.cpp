@@ -319,7 +319,7 @@ class GridPlay {
 
 TEST(Grid, TellsEveryCellExactlyWhatChangesThere) {
   std::uint64_t seed = 0;
-  for (const CellKind kind : {CellKind::kRows, CellKind::kAuto, CellKind::kBatch, CellKind::kSegmented}) {
+  for (const CellKind kind : {CellKind::kRows, CellKind::kBatch, CellKind::kSegmented}) {
     for (const std::size_t shards : {1, 8}) {
       for (const bool limited : {true, false}) {
         const Spec2 spec = limited ? Spec2(10, {0, 0}, {5, 3}) : Spec2::unlimited(10, {0, 0});

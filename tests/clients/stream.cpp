@@ -37,7 +37,6 @@ void add_counters(const sweepgrid::StepCounters& c, Digest& digest) {
                                     c.cells.global_sorts,
                                     c.cells.segments_split,
                                     c.cells.segments_merged,
-                                    c.cells.kinds_changed,
                                     c.inserts,
                                     c.updates,
                                     c.erases,

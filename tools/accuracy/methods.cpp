@@ -98,7 +98,7 @@ std::vector<Method> make_methods() {
   for (const auto& [name, kind] : kKinds) {
     methods.push_back(engine_method(std::string("grid/") + name, "the engine with cells of this kind alone", kind));
   }
-  methods.push_back(engine_method("engine", "the engine as it configures itself", CellKind::kAuto));
+  methods.push_back(engine_method("engine", "the engine as it configures itself", CellKind::kRows));
   methods.push_back({"octree", "dynamic octree, the paper's baseline", Claim::kExact, true,
                      [](const SceneScript&, std::uint64_t) { return std::make_unique<OctreeSystem>(); }});
 #ifdef SWEEPGRID_WITH_BULLET

@@ -78,8 +78,7 @@ Json counters_json(const StepCounters& counters) {
           {"local_sorts", counters.cells.local_sorts},
           {"global_sorts", counters.cells.global_sorts},
           {"segments_split", counters.cells.segments_split},
-          {"segments_merged", counters.cells.segments_merged},
-          {"kinds_changed", counters.cells.kinds_changed}};
+          {"segments_merged", counters.cells.segments_merged}};
 }
 
 Json verification_json(const std::optional<Verification>& verification) {

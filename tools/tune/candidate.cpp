@@ -77,12 +77,12 @@ CandidateSpace candidate_space(const SceneInfo& scene) {
     space.envelopes.push_back(configuration.envelope);
   }
   space.envelopes.push_back(EnvelopeOptions{.margin = 0.002});  // for what only trembles
-  for (const CellKind kind : {CellKind::kAuto, CellKind::kBatch, CellKind::kSegmented}) {
+  for (const CellKind kind : {CellKind::kRows, CellKind::kBatch, CellKind::kSegmented}) {
     for (const std::optional<int> population : {std::optional<int>(), std::optional<int>(8), std::optional<int>(32)}) {
       space.cells.push_back({kind, population});
     }
   }
-  space.cells.push_back({CellKind::kAuto, std::nullopt, Reduction::kWitnessCounts});
+  space.cells.push_back({CellKind::kRows, std::nullopt, Reduction::kWitnessCounts});
   return space;
 }
 

@@ -16,7 +16,7 @@ namespace sweepgrid::tune {
 
 /// Cells, and how they report.
 struct CellChoice {
-  CellKind kind = CellKind::kAuto;
+  CellKind kind = CellKind::kRows;
   std::optional<int> population;
   Reduction reduction = Reduction::kSingleReporter;
 };

@@ -18,7 +18,7 @@ constexpr std::size_t kMostAgain = 5;
 /// How many choices are not what an engine does when it is told nothing.
 int told(const Candidate& candidate) {
   const CellChoice& cells = candidate.cells;
-  return (candidate.envelope ? 1 : 0) + (cells.kind != CellKind::kAuto ? 1 : 0) + (cells.population ? 1 : 0) +
+  return (candidate.envelope ? 1 : 0) + (cells.kind != CellKind::kRows ? 1 : 0) + (cells.population ? 1 : 0) +
          (cells.reduction != Reduction::kSingleReporter ? 1 : 0);
 }
 

@@ -22,9 +22,11 @@ namespace sweepgrid {
 // What values are called, in JSON as on command lines.
 
 [[nodiscard]] inline const json_members::Names<CellKind>& json_names(CellKind) {
-  static const json_members::Names<CellKind> all = {
-      {"auto", CellKind::kAuto},           {"rows", CellKind::kRows},       {"batch", CellKind::kBatch},
-      {"segmented", CellKind::kSegmented}, {"classic", CellKind::kClassic}, {"plane", CellKind::kPlane}};
+  static const json_members::Names<CellKind> all = {{"rows", CellKind::kRows},
+                                                    {"batch", CellKind::kBatch},
+                                                    {"segmented", CellKind::kSegmented},
+                                                    {"classic", CellKind::kClassic},
+                                                    {"plane", CellKind::kPlane}};
   return all;
 }
 

@@ -40,7 +40,7 @@ auto EngineCore<Scalar, Dim>::fit(const std::vector<BoxType>& boxes) const -> ty
   fit.cell_size = config_.cell_size;
   if (config_.cell_population) {
     fit.population = *config_.cell_population;
-  } else if (config_.cell.kind != CellKind::kRows && config_.cell.kind != CellKind::kAuto) {
+  } else if (config_.cell.kind != CellKind::kRows) {
     fit.population = 48;  // measured for batch cells, see grid/README.md
   }
   return fit.derive(boxes, objects_.size());

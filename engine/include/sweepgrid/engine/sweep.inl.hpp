@@ -11,8 +11,7 @@ namespace sweepgrid {
 
 template <class Scalar, int Dim>
 bool EngineCore<Scalar, Dim>::choose_sweep() {
-  const bool rows = config_.cell.kind == CellKind::kRows || config_.cell.kind == CellKind::kAuto;
-  if (!SceneSweep<Scalar, Dim>::kPossible || counting() || !rows) return false;
+  if (!SceneSweep<Scalar, Dim>::kPossible || counting() || config_.cell.kind != CellKind::kRows) return false;
   if (config_.step_method != StepMethod::kAuto) return config_.step_method == StepMethod::kSweep;
   return method_.sweep(changes_, objects_.size(), celled_ && gridded_);
 }

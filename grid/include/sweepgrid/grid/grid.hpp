@@ -212,9 +212,9 @@ class Grid {
   template <class Boxes>
   static void take_visits(std::span<const Call> calls, const Boxes& boxes, Output& out);
   template <class Boxes>
-  std::size_t drain_visited(CellType& cell, std::span<const Call> calls, const Boxes& boxes, Output& out) const;
+  void drain_visited(CellType& cell, std::span<const Call> calls, const Boxes& boxes, Output& out) const;
   template <class Boxes>
-  static std::size_t refresh_visited(CellType& cell, const Boxes& boxes, Output& out);
+  static void refresh_visited(CellType& cell, const Boxes& boxes, Output& out);
   using Visits = std::vector<typename SweepAndPrune<Scalar, Dim>::Visit>;
   static const Visits& sides(const Visits& visits, bool were, Output& out);
 

@@ -133,18 +133,14 @@ template <class Boxes>
 void Grid<Scalar, Dim>::drain_cell(Shard& shard, const ActiveCell& active, const Boxes& boxes, Output& out) {
   CellType& cell = shard.cells[active.cell];
   const std::size_t before = out.deltas.size();
-  const bool judged = options_.kind == CellKind::kAuto && cell.size() >= KindChoice::kManyObjects / 2;
-  const SapCounters counters_before = judged ? out.counters : SapCounters{};
   const auto calls = std::span<const Call>(shard.calls).subspan(active.first_call, active.call_count);
   out.note_cell(calls.size(), cell.size());
   const std::size_t heard = take_ops(calls, boxes, out);
-  std::size_t ops = heard;
   if (heard == calls.size()) {
     cell.drain(out.ops, out.deltas, out.counters);
   } else {
-    ops = drain_visited(cell, calls.subspan(heard), boxes, out);
+    drain_visited(cell, calls.subspan(heard), boxes, out);
   }
-  if (judged) cell.choose_kind(ops, out.counters - counters_before, options_, out.counters);
   if (out.deltas.size() > before) out.runs.push_back({out.deltas.size(), cell.code()});
   if (cell.size() == 0) out.emptied.push_back(active.cell);
 }
@@ -185,32 +181,23 @@ void Grid<Scalar, Dim>::take_visits(std::span<const Call> calls, const Boxes& bo
 }
 
 // Visitors meet residents as they were with the box that they had, and residents as they are with the box that they
-// have; those that stay both at once, which leaves out pairs that go on. Returns how many ops there were.
+// have; those that stay both at once, which leaves out pairs that go on.
 template <class Scalar, int Dim>
 template <class Boxes>
-std::size_t Grid<Scalar, Dim>::drain_visited(CellType& cell, std::span<const Call> calls, const Boxes& boxes,
-                                             Output& out) const {
+void Grid<Scalar, Dim>::drain_visited(CellType& cell, std::span<const Call> calls, const Boxes& boxes,
+                                      Output& out) const {
   take_visits(calls, boxes, out);
-  std::size_t ops = 0;
-  if (cell.has_rows() && !out.ops.empty()) {
-    ops = refresh_visited(cell, boxes, out);
-  } else {
-    ops = out.ops.size();
-    if (ops == 0) {
-      cell.visit(out.visits, out.residents, out.deltas, out.counters);
-    } else {
-      cell.visit(sides(out.visits, true, out), out.residents, out.deltas, out.counters);
-      cell.drain(out.ops, out.deltas, out.counters);
-      cell.visit(sides(out.visits, false, out), out.residents, out.deltas, out.counters);
-    }
-  }
-  return ops;
+  if (out.ops.empty()) return cell.visit(out.visits, out.residents, out.deltas, out.counters);
+  if (cell.has_rows()) return refresh_visited(cell, boxes, out);
+  cell.visit(sides(out.visits, true, out), out.residents, out.deltas, out.counters);
+  cell.drain(out.ops, out.deltas, out.counters);
+  cell.visit(sides(out.visits, false, out), out.residents, out.deltas, out.counters);
 }
 
 // Who goes is met as it was, who comes as it is; each in rows of its own.
 template <class Scalar, int Dim>
 template <class Boxes>
-std::size_t Grid<Scalar, Dim>::refresh_visited(CellType& cell, const Boxes& boxes, Output& out) {
+void Grid<Scalar, Dim>::refresh_visited(CellType& cell, const Boxes& boxes, Output& out) {
   const auto stays =
       std::partition(out.ops.begin(), out.ops.end(), [](const auto& op) { return op.kind == OpKind::kErase; });
   const auto comes = std::partition(stays, out.ops.end(), [](const auto& op) { return op.kind == OpKind::kUpdate; });
@@ -228,10 +215,9 @@ std::size_t Grid<Scalar, Dim>::refresh_visited(CellType& cell, const Boxes& boxe
   };
   meet(goers, true);
   cell.drain(goers, out.deltas, out.counters);
-  const std::size_t updates = cell.rows().refresh(boxes, out.refresh, out.deltas, out.counters, out.visits);
+  cell.rows().refresh(boxes, out.refresh, out.deltas, out.counters, out.visits);
   cell.drain(comers, out.deltas, out.counters);
   meet(comers, false);
-  return goers.size() + updates + comers.size();
 }
 
 // Visits with one of their sides only, the box that they had or the one that they have.

@@ -15,7 +15,6 @@ namespace sweepgrid {
 template <class Scalar, int Dim>
 std::unique_ptr<SweepAndPrune<Scalar, Dim>> make_cell(const CellOptions& options) {
   switch (options.kind) {
-    case CellKind::kAuto:
     case CellKind::kRows:
       return std::make_unique<RowCell<Scalar, Dim>>();
     case CellKind::kBatch:

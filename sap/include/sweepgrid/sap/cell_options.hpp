@@ -4,7 +4,6 @@ namespace sweepgrid {
 
 /// The kinds of cell. All give the same overlaps; they differ in what makes them fast.
 enum class CellKind {
-  kAuto,       ///< rows at first; a grid has a cell change its kind as long as another is clearly cheaper
   kRows,       ///< rows of coordinates, compared with vector instructions: cells of few objects, however they move
   kBatch,      ///< batch insertion and removal (section 3.2.1): most objects move, or many come and go
   kSegmented,  ///< segmented interval lists (section 3.2.2): few objects move, few come and go
@@ -21,7 +20,7 @@ enum class Integration {
 
 /// Settings of a cell; the defaults are measured (see sap/README.md).
 struct CellOptions {
-  CellKind kind = CellKind::kAuto;
+  CellKind kind = CellKind::kRows;
   /// Endpoints per segment, 4 to kMostSegmentCapacity (kSegmented only; the paper finds about 2^5). Every axis of
   /// every cell holds memory for at least one segment.
   int segment_capacity = 32;

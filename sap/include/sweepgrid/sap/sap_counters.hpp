@@ -18,7 +18,6 @@ struct SapCounters {
   std::uint64_t global_sorts = 0;      ///< drains that passed over whole interval lists
   std::uint64_t segments_split = 0;    ///< full segments cut in two
   std::uint64_t segments_merged = 0;   ///< sparse neighbouring segments joined
-  std::uint64_t kinds_changed = 0;     ///< cells that took another kind
 
   SapCounters& operator+=(const SapCounters& other) {
     swaps += other.swaps;
@@ -31,25 +30,7 @@ struct SapCounters {
     global_sorts += other.global_sorts;
     segments_split += other.segments_split;
     segments_merged += other.segments_merged;
-    kinds_changed += other.kinds_changed;
     return *this;
-  }
-
-  /// What was added since `before`.
-  [[nodiscard]] SapCounters operator-(const SapCounters& before) const {
-    SapCounters added = *this;
-    added.swaps -= before.swaps;
-    added.box_tests -= before.box_tests;
-    added.deltas -= before.deltas;
-    added.endpoints_visited -= before.endpoints_visited;
-    added.endpoints_sorted -= before.endpoints_sorted;
-    added.search_steps -= before.search_steps;
-    added.local_sorts -= before.local_sorts;
-    added.global_sorts -= before.global_sorts;
-    added.segments_split -= before.segments_split;
-    added.segments_merged -= before.segments_merged;
-    added.kinds_changed -= before.kinds_changed;
-    return added;
   }
 
   friend bool operator==(const SapCounters&, const SapCounters&) = default;
