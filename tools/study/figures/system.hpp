@@ -13,6 +13,21 @@
 
 namespace sweepgrid::study {
 
+/// What was counted since `before`.
+[[nodiscard]] inline SapCounters added_since(SapCounters counters, const SapCounters& before) {
+  counters.swaps -= before.swaps;
+  counters.box_tests -= before.box_tests;
+  counters.deltas -= before.deltas;
+  counters.endpoints_visited -= before.endpoints_visited;
+  counters.endpoints_sorted -= before.endpoints_sorted;
+  counters.search_steps -= before.search_steps;
+  counters.local_sorts -= before.local_sorts;
+  counters.global_sorts -= before.global_sorts;
+  counters.segments_split -= before.segments_split;
+  counters.segments_merged -= before.segments_merged;
+  return counters;
+}
+
 /// Exact counts of what a system did; those that it does not keep are 0.
 struct Work {
   SapCounters cells;
@@ -22,7 +37,7 @@ struct Work {
   std::uint64_t events = 0;
 
   [[nodiscard]] Work operator-(const Work& before) const {
-    return {cells - before.cells, updates - before.updates, cell_ops - before.cell_ops,
+    return {added_since(cells, before.cells), updates - before.updates, cell_ops - before.cell_ops,
             cells_drained - before.cells_drained, events - before.events};
   }
 };
