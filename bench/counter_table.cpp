@@ -32,7 +32,6 @@ constexpr Counter kCounters[] = {
     {"global_sorts", &SapCounters::global_sorts},
     {"segments_split", &SapCounters::segments_split},
     {"segments_merged", &SapCounters::segments_merged},
-    {"kinds_changed", &SapCounters::kinds_changed},
 };
 static_assert(sizeof(StepCounters) == std::size(kCounters) * sizeof(std::uint64_t),
               "a counter has no row in kCounters");
