@@ -273,7 +273,7 @@ TEST_F(Program, GivesTheSameEventsForAllSettings) {
   const std::string expected = run("run --threads 1 --events - " + scenes).out;
   EXPECT_GT(std::count(expected.begin(), expected.end(), '\n'), 200);
   for (const char* settings : {"--threads 2", "--cell segmented --segment-capacity 4", "--cell classic --threads 3",
-                               "--cell plane", "--cell batch --cell-size 2.5", "--cell auto --cell-size auto",
+                               "--cell plane", "--cell batch --cell-size 2.5", "--cell rows --cell-size auto",
                                "--cell rows --reduction reporter", "--cell rows --reduction counts --threads 2",
                                "--cell rows --cell-population 1", "--cell-population auto --reduction counts"}) {
     EXPECT_EQ(run(std::string("run --verify --events - ") + settings + " " + scenes).out, expected) << settings;

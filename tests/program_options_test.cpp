@@ -92,7 +92,7 @@ TEST_F(ProgramOptions, MayStandBeforeTheSceneAndAfterIt) {
 
 TEST_F(ProgramOptions, RefuseOtherNamesThanTheirOwn) {
   for (const auto& [arguments, reason] : std::vector<std::pair<std::string, std::string>>{
-           {"run uniform:n=9 --cell 0", "--cell: '0' is none of auto, batch, classic, plane, rows, segmented"},
+           {"run uniform:n=9 --cell 0", "--cell: '0' is none of batch, classic, plane, rows, segmented"},
            {"run uniform:n=9 --scalar 1", "--scalar: '1' is none of double, float"},
            {"run uniform:n=9 --reduction 1", "--reduction: '1' is none of counts, reporter"},
            {"tune uniform:n=9 --truth 1", "--truth: '1' is none of T0, T1, T2"}}) {

@@ -24,7 +24,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-const std::string kScene = "uniform:n=3000,moving=0.5,churn=0.01,seed=3";
+const std::string kScene = "uniform:n=6000,moving=0.5,churn=0.01,seed=3";
 const std::string kRecording = std::string(SWEEPGRID_RECORDINGS) + "/bullet_freefall_assorted_1000_f100.aabbs.xz";
 
 double work_of(const std::vector<WorkGraph>& steps) {
@@ -56,8 +56,8 @@ TEST(ScalingScene, NeedsAStepThatChangesSomething) {
   EXPECT_THROW(static_cast<void>(read_scaling_scene("uniform:n=10,moving=0,churn=0", 5)), SceneError);
   const SceneScript scene = read_scaling_scene(kScene, 3);
   EXPECT_EQ(scene.steps.size(), 4U);
-  EXPECT_EQ(scene.steps[0].inserted.size(), 3000U);
-  EXPECT_EQ(scene.objects, 3000U + 3 * 30);
+  EXPECT_EQ(scene.steps[0].inserted.size(), 6000U);
+  EXPECT_EQ(scene.objects, 6000U + 3 * 60);
 }
 
 TEST(ScalingRun, EventsAreThoseOfTheOracleOnAnyNumberOfThreads) {

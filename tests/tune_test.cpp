@@ -370,10 +370,10 @@ TEST(Tune, FindsWhatIsBestTogetherOnly) {
   MadeUp costs([](const Candidate& candidate) {
     const bool floats = candidate.door == Door::kFloatNearest;
     const std::string cells = cells_name(candidate.cells);
-    const bool small = cells == "auto cells of 8";
+    const bool small = cells == "rows of 8";
     if (small && floats) return 0.5;
     const double numbers = floats ? 1.05 : candidate.door == Door::kDouble ? 1.0 : 2.0;
-    return cells == "auto cells" ? numbers : small ? numbers + 0.1 : 3;
+    return cells == "rows" ? numbers : small ? numbers + 0.1 : 3;
   });
   const TuneResult result = tune_with(kUniform, demand_of(), costs);
   EXPECT_EQ(result.chosen.door, Door::kFloatNearest);
@@ -479,7 +479,7 @@ TEST(TuneJson, IsASetupWithTheReasons) {
   EXPECT_EQ(json.at("tune").at("reasons").size(), 6U);
   EXPECT_EQ(json.at("tune").at("rejected").size(), tuning.result.rejected.size());
   EXPECT_EQ(json.at("tune").at("sample").at("windows").size(), 1U);
-  EXPECT_NE(tune_text(tuning).find("chosen: int16; xyz; no envelopes; auto cells"), std::string::npos);
+  EXPECT_NE(tune_text(tuning).find("chosen: int16; xyz; no envelopes; rows"), std::string::npos);
 }
 
 }  // namespace

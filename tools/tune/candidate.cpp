@@ -34,7 +34,8 @@ std::string envelope_name(const EnvelopeChoice& envelope) {
 }
 
 std::string cells_name(const CellChoice& cells) {
-  std::string name = json_members::name_of(cells.kind) + " cells";
+  std::string name = json_members::name_of(cells.kind);
+  if (cells.kind != CellKind::kRows) name += " cells";
   if (cells.population) name += fmt::format(" of {}", *cells.population);
   if (cells.reduction == Reduction::kWitnessCounts) name += ", witness counts";
   return name;
