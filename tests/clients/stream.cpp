@@ -27,25 +27,11 @@ struct Digests {
 };
 
 void add_counters(const sweepgrid::StepCounters& c, Digest& digest) {
-  for (const std::uint64_t count : {c.cells.swaps,
-                                    c.cells.box_tests,
-                                    c.cells.deltas,
-                                    c.cells.endpoints_visited,
-                                    c.cells.endpoints_sorted,
-                                    c.cells.search_steps,
-                                    c.cells.local_sorts,
-                                    c.cells.global_sorts,
-                                    c.cells.segments_split,
-                                    c.cells.segments_merged,
-                                    c.inserts,
-                                    c.updates,
-                                    c.erases,
-                                    c.migrations,
-                                    c.cell_ops,
-                                    c.cells_drained,
-                                    c.regrids,
-                                    c.begins,
-                                    c.ends}) {
+  for (const std::uint64_t count :
+       {c.cells.swaps, c.cells.box_tests, c.cells.deltas, c.cells.endpoints_visited, c.cells.endpoints_sorted,
+        c.cells.search_steps, c.cells.local_sorts, c.cells.global_sorts, c.cells.segments_split,
+        c.cells.segments_merged, c.inserts, c.updates, c.erases, c.migrations, c.cell_ops, c.cells_drained, c.regrids,
+        c.begins, c.ends}) {
     digest.add(count);
   }
 }
