@@ -15,6 +15,8 @@
 #include <sweepgrid/sap/box.hpp>
 #include <sweepgrid/sap/cell_op.hpp>
 
+#include "every_overlap.hpp"
+
 /// The brute-force oracle of engines. Needs no test framework, so that small programs can use it too.
 namespace sweepgrid::oracle {
 
@@ -55,19 +57,17 @@ class EngineModel {
     std::vector<BoxType> boxes;
     for (const auto& [key, box] : boxes_) keys.push_back(key), boxes.push_back(box);
     std::vector<Pair<Key>> now;
-    for (std::size_t a = 0; a < boxes.size(); ++a) {
-      for (std::size_t b = a + 1; b < boxes.size(); ++b) {
-        if (boxes[a].overlaps(boxes[b])) now.push_back({keys[a], keys[b]});
-      }
-    }
+    every_overlap(boxes, [&](std::size_t a, std::size_t b) { now.push_back({keys[a], keys[b]}); });
     // A key that was inserted anew names another object than before: its old pairs end and its new ones begin.
     const auto fresh = [this](const Pair<Key>& pair) {
-      return fresh_.count(pair.first) + fresh_.count(pair.second) > 0;
+      return !fresh_.empty() && fresh_.count(pair.first) + fresh_.count(pair.second) > 0;
     };
     const auto missing = [&](const std::vector<Pair<Key>>& list, const std::vector<Pair<Key>>& other) {
       std::vector<Pair<Key>> result;
+      auto at = other.begin();
       for (const auto& pair : list) {
-        if (fresh(pair) || !std::binary_search(other.begin(), other.end(), pair, less)) result.push_back(pair);
+        while (at != other.end() && less(*at, pair)) ++at;
+        if (at == other.end() || less(pair, *at) || fresh(pair)) result.push_back(pair);
       }
       return result;
     };
@@ -78,6 +78,8 @@ class EngineModel {
     return events_;
   }
 
+  /// Those of the last step.
+  [[nodiscard]] const Events<Key>& events() const { return events_; }
   [[nodiscard]] const std::vector<Pair<Key>>& pairs() const { return pairs_; }
   [[nodiscard]] const std::map<Key, BoxType, Order>& boxes() const { return boxes_; }
 

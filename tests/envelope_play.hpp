@@ -55,16 +55,14 @@ class Listener {
 /// What the envelopes say by brute force.
 template <class Scalar, int Dim>
 Pairs pairs_of_envelopes(const Engine<Scalar, Dim>& engine, const EngineModel<Scalar, Dim>& model) {
-  std::vector<std::pair<std::uint64_t, Box<Scalar, Dim>>> envelopes;
-  for (const auto& [key, box] : model.boxes()) envelopes.emplace_back(key, engine.envelope(engine.find(key).value()));
-  Pairs pairs;
-  for (std::size_t a = 0; a < envelopes.size(); ++a) {
-    for (std::size_t b = a + 1; b < envelopes.size(); ++b) {
-      if (envelopes[a].second.overlaps(envelopes[b].second)) {
-        pairs.push_back({envelopes[a].first, envelopes[b].first});
-      }
-    }
+  std::vector<std::uint64_t> keys;
+  std::vector<Box<Scalar, Dim>> envelopes;
+  for (const auto& [key, box] : model.boxes()) {
+    keys.push_back(key);
+    envelopes.push_back(engine.envelope(engine.find(key).value()));
   }
+  Pairs pairs;
+  every_overlap(envelopes, [&](std::size_t a, std::size_t b) { pairs.push_back({keys[a], keys[b]}); });
   return pairs;
 }
 

@@ -12,6 +12,8 @@
 
 #include <sweepgrid/sap/sweep_and_prune.hpp>
 
+#include "every_overlap.hpp"
+
 /// The brute-force oracle of cells. Needs no test framework, so that small programs can use it too.
 namespace sweepgrid::oracle {
 
@@ -151,18 +153,21 @@ class CellOracle {
       }
     }
     overlaps_.clear();  // stays sorted, for the map is
-    for (auto a = boxes_.begin(); a != boxes_.end(); ++a) {
-      for (auto b = std::next(a); b != boxes_.end(); ++b) {
-        if (a->second.overlaps(b->second)) overlaps_.emplace_back(a->first, b->first);
-      }
-    }
+    std::vector<ObjectId> objects;
+    std::vector<Box<Scalar, Dim>> boxes;
+    for (const auto& [object, box] : boxes_) objects.push_back(object), boxes.push_back(box);
+    every_overlap(boxes, [&](std::size_t a, std::size_t b) { overlaps_.emplace_back(objects[a], objects[b]); });
   }
 
   [[nodiscard]] std::string compare_deltas(const std::vector<PairKey>& before,
                                            const std::vector<OverlapDelta>& deltas) const {
+    std::vector<PairKey> begun;
+    std::vector<PairKey> ended;
+    std::set_difference(overlaps_.begin(), overlaps_.end(), before.begin(), before.end(), std::back_inserter(begun));
+    std::set_difference(before.begin(), before.end(), overlaps_.begin(), overlaps_.end(), std::back_inserter(ended));
     std::map<PairKey, int> missing;  // change of state minus what the cell said
-    for (const PairKey pair : overlaps_) ++missing[pair];
-    for (const PairKey pair : before) --missing[pair];
+    for (const PairKey pair : begun) ++missing[pair];
+    for (const PairKey pair : ended) --missing[pair];
     for (const OverlapDelta& delta : deltas) missing[delta.pair] -= delta.change;
     for (const auto& [pair, change] : missing) {
       if (change == 0) continue;
