@@ -10,6 +10,7 @@
 
 #include "accuracy/methods.hpp"
 #include "accuracy/regimes.hpp"
+#include "sanitized.hpp"
 #include "study/stability/stability_study.hpp"
 
 namespace sweepgrid::study::accuracy_stability_test {
@@ -146,9 +147,7 @@ TEST(StabilityReport, ASupersetIsNoFailureOfWhoClaimsNoMore) {
 }
 
 TEST(StabilityStudy, WritesAReportOfTrialsThatWereMade) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  GTEST_SKIP() << "guarded runs are not for sanitizers";
-#endif
+  if (oracle::kSanitized) GTEST_SKIP() << "guarded runs are not for sanitizers";
   StudyOptions options;
   options.out = testing::TempDir() + "stability_study";
   options.points = Points::kFresh;
