@@ -7,25 +7,16 @@
 #include <gtest/gtest.h>
 
 #include <sweepgrid/engine/engine.hpp>
-#include <sweepgrid/engine/keyed_engine.inl.hpp>
 
 #include "engine_client.hpp"
 #include "engine_oracle.hpp"
+#include "engine_pairing.hpp"
 
 // Steps that sweep all objects from scratch: when they are taken, and what only they could get wrong.
-namespace sweepgrid {
-
-// Numbers of axes and scalars that are not compiled ahead.
-template class KeyedEngine<float, 1>;
-template class KeyedEngine<double, 4>;
-template class KeyedEngine<std::int64_t, 2>;
-
-}  // namespace sweepgrid
-
 namespace sweepgrid::engine_sweep_test {
 namespace {
 
-using oracle::EngineModel;
+using oracle::Pairing;
 using oracle::Random;
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
@@ -37,38 +28,6 @@ Config config_of(StepMethod method, int threads = 1) {
   config.parallel_from = 0;
   return config;
 }
-
-/// An engine beside the model.
-template <class Scalar, int Dim>
-struct Pairing {
-  using BoxType = Box<Scalar, Dim>;
-
-  explicit Pairing(const Config& config) : engine(config) {}
-
-  void put(std::uint64_t key, const BoxType& box) {
-    if (engine.contains(key)) {
-      engine.update(key, box);
-      model.update(key, box);
-    } else {
-      engine.insert(key, box);
-      model.insert(key, box);
-    }
-  }
-  void erase(std::uint64_t key) {
-    engine.erase(key);
-    model.erase(key);
-  }
-  // Returns what is wrong.
-  std::string step() {
-    events = &engine.step();
-    const std::string wrong = oracle::difference(model.step(), *events);
-    return wrong.empty() ? oracle::compare(engine, model) : wrong;
-  }
-
-  Engine<Scalar, Dim> engine;
-  EngineModel<Scalar, Dim> model;
-  const Events<std::uint64_t>* events = nullptr;  // of the latest step
-};
 
 Box<float, 3> cube(float x, float y, float z, float width = 1) {
   return {{x, y, z}, {x + width, y + width, z + width}};
@@ -168,82 +127,11 @@ TEST(Sweep, PairsThatJumpTogetherOrMeetOnBothSidesAreSilent) {
   ASSERT_EQ(scene.step(), "");
 }
 
-// An object without a box before the step, or after it, meets nobody there, not even who is everywhere.
 TEST(Sweep, WhoIsEverywhereBeginsWithAllAndEndsWithAll) {
-  const auto everywhere = [](auto scalar) {
-    using Scalar = decltype(scalar);
-    using Limits = std::numeric_limits<Scalar>;
-    const Scalar least = Limits::has_infinity ? -Limits::infinity() : Limits::lowest();
-    const Scalar most = Limits::has_infinity ? Limits::infinity() : Limits::max();
-    Pairing<Scalar, 2> scene(config_of(StepMethod::kSweep));
-    for (std::uint64_t key = 0; key < 40; ++key) {
-      scene.put(key, {{least, least}, {most, most}});
-      ASSERT_EQ(scene.step(), "");
-      EXPECT_EQ(scene.events->begins.size(), key);
-    }
-    for (std::uint64_t key = 0; key < 40; ++key) {
-      scene.erase(key);
-      scene.put(key + 100, {{least, least}, {least, least}});
-      ASSERT_EQ(scene.step(), "");
-      EXPECT_EQ(scene.events->ends.size(), 39u);
-    }
-  };
-  everywhere(float());
-  everywhere(double());
-  everywhere(std::int16_t());
-  everywhere(std::int32_t());
-  everywhere(std::int64_t());
-}
-
-template <class Scalar, int Dim>
-void play_line(Scalar scale) {
-  for (const int threads : {1, 2}) {
-    Pairing<Scalar, Dim> scene(config_of(StepMethod::kSweep, threads));
-    Random random(9);
-    for (int step = 0; step < 12; ++step) {
-      for (std::uint64_t key = 0; key < 150; ++key) {
-        if (step > 0 && random.percent(30)) continue;
-        if (scene.engine.contains(key) && random.percent(10)) {
-          scene.erase(key);
-          continue;
-        }
-        Box<Scalar, Dim> box;
-        for (int axis = 0; axis < Dim; ++axis) {
-          box.min[axis] = static_cast<Scalar>(random.below(60)) * scale;
-          box.max[axis] = box.min[axis] + static_cast<Scalar>(random.below(Dim == 1 ? 2 : 20)) * scale;
-        }
-        scene.put(key, box);
-      }
-      ASSERT_EQ(scene.step(), "") << "step " << step;
-    }
-    EXPECT_EQ(scene.engine.stats().total.sweeps, 12u);
-  }
-}
-
-TEST(Sweep, WorksOnOneAxisAndOnFour) {
-  play_line<float, 1>(0.5F);
-  play_line<double, 4>(0.5);
-}
-
-// To double, neighbouring 64-bit integers are one and the same number.
-TEST(Sweep, IsExactForIntegersThatItRounds) {
-  play_line<std::int64_t, 2>(1);
-  Pairing<std::int64_t, 2> scene(config_of(StepMethod::kSweep));
-  constexpr std::int64_t kBig = (std::int64_t{1} << 60) + 1;
-  for (std::int64_t i = 0; i < 100; ++i) {
-    const std::int64_t x = kBig + 3 * (i % 10);
-    const std::int64_t y = kBig + 3 * (i / 10);
-    scene.put(static_cast<std::uint64_t>(i), {{x, y}, {x + 2, y + 2}});  // a gap of one between neighbours
-  }
-  ASSERT_EQ(scene.step(), "");
-  EXPECT_TRUE(scene.engine.pairs().empty());
-  for (std::int64_t i = 0; i < 100; i += 2) {
-    const std::int64_t x = kBig + 3 * (i % 10) + 1;
-    const std::int64_t y = kBig + 3 * (i / 10);
-    scene.put(static_cast<std::uint64_t>(i), {{x, y}, {x + 2, y + 2}});
-  }
-  ASSERT_EQ(scene.step(), "");
-  EXPECT_FALSE(scene.events->begins.empty());
+  oracle::meet_everywhere<float>();
+  oracle::meet_everywhere<double>();
+  oracle::meet_everywhere<std::int16_t>();
+  oracle::meet_everywhere<std::int32_t>();
 }
 
 // Rows that were fitted to small boxes would hold each of the large ones a thousand times.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 
 #include <sweepgrid/sap/cell_kind.inl.hpp>
@@ -14,6 +15,8 @@ extern template std::unique_ptr<SweepAndPrune<float, 2>> make_cell<float, 2>(con
 extern template std::unique_ptr<SweepAndPrune<float, 3>> make_cell<float, 3>(const CellOptions&);
 extern template std::unique_ptr<SweepAndPrune<double, 2>> make_cell<double, 2>(const CellOptions&);
 extern template std::unique_ptr<SweepAndPrune<double, 3>> make_cell<double, 3>(const CellOptions&);
+extern template std::unique_ptr<SweepAndPrune<std::int16_t, 2>> make_cell<std::int16_t, 2>(const CellOptions&);
+extern template std::unique_ptr<SweepAndPrune<std::int32_t, 3>> make_cell<std::int32_t, 3>(const CellOptions&);
 
 namespace oracle {
 

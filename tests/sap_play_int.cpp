@@ -4,9 +4,7 @@
 
 namespace sweepgrid::oracle {
 
-template std::string play_cell<std::int32_t, 1>(const CellOptions&, const Regime&, std::uint64_t);
 template std::string play_cell<std::int32_t, 3>(const CellOptions&, const Regime&, std::uint64_t);
-template std::string play_cell<std::uint32_t, 2>(const CellOptions&, const Regime&, std::uint64_t);
 template std::string play_cell<std::int16_t, 2>(const CellOptions&, const Regime&, std::uint64_t);
 
 }  // namespace sweepgrid::oracle
