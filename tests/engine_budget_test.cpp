@@ -126,6 +126,9 @@ Counts play_all(const SceneRegime& regime) {
       for (const Reduction reduction : kReductions) {
         ++turn;
         if (kSanitized && turn % 5 != 0) continue;
+        // Each envelope with each kind of cell, and one reduction.
+        const std::size_t before = turn - 1;
+        if (!kSanitized && !plays_all() && (before / 12 + before / 2 + before) % 2 != 0) continue;
         auto config = kGrids[2].template config<Dim>(kind, make_executor(1), reduction);
         if (reduction == Reduction::kSingleReporter) config.cell_population.reset();
         config.envelope = envelope;

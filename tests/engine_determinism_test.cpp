@@ -70,7 +70,10 @@ TEST_P(EngineDeterminism, EventsAreTheSameForAllThreadsCellsAndGrids) {
     if (kSanitized && threads == 2) continue;
     const auto executor = make_executor(threads);
     for (std::size_t k = 0; k < kKinds.size(); ++k) {
-      for (const GridChoice& grid : kGrids) {
+      for (std::size_t g = 0; g < kGrids.size(); ++g) {
+        const GridChoice& grid = kGrids[g];
+        // Each grid with each kind of cell, on half of the numbers of threads.
+        if (!plays_all() && (k + g + static_cast<std::size_t>(threads)) % 2 != 0) continue;
         if (kSanitized && (k + static_cast<std::size_t>(threads)) % 3 != 0) continue;
         const Reduction reduction = kReductions[turn++ % 2];
         if (!grid.suits(GetParam().place, reduction)) continue;

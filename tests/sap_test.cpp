@@ -18,6 +18,7 @@
 #include <sweepgrid/sap/sweeping_plane.hpp>
 
 #include "op_script.hpp"
+#include "sanitized.hpp"
 #include "sap_oracle.hpp"
 #include "sap_play.hpp"
 
@@ -53,11 +54,14 @@ struct Space {
 };
 
 using oracle::play_cell;
-constexpr Space kSpaces[] = {{"float1", play_cell<float, 1>},        {"float2", play_cell<float, 2>},
-                             {"float3", play_cell<float, 3>},        {"float4", play_cell<float, 4>},
-                             {"double2", play_cell<double, 2>},      {"double3", play_cell<double, 3>},
-                             {"int1", play_cell<std::int32_t, 1>},   {"int3", play_cell<std::int32_t, 3>},
-                             {"short2", play_cell<std::int16_t, 2>}, {"uint2", play_cell<std::uint32_t, 2>}};
+constexpr Space kSpaces[] = {
+#ifndef SWEEPGRID_COMPILED_AHEAD_ONLY
+    {"float1", play_cell<float, 1>},      {"float4", play_cell<float, 4>},
+    {"int1", play_cell<std::int32_t, 1>}, {"uint2", play_cell<std::uint32_t, 2>},
+#endif
+    {"float2", play_cell<float, 2>},      {"float3", play_cell<float, 3>},
+    {"double2", play_cell<double, 2>},    {"double3", play_cell<double, 3>},
+    {"int3", play_cell<std::int32_t, 3>}, {"short2", play_cell<std::int16_t, 2>}};
 
 void PrintTo(const NamedKind& kind, std::ostream* out) { *out << kind.name; }
 void PrintTo(const Space& space, std::ostream* out) { *out << space.name; }
@@ -74,7 +78,11 @@ TEST_P(CellDeltas, SumToTheChangeOfEveryPair) {
   const auto& [kind, space] = GetParam();
   const std::uint64_t seed = from_environment("SWEEPGRID_TEST_SEED", 1);
   const std::uint64_t rounds = from_environment("SWEEPGRID_TEST_ROUNDS", 1);
+  // A part of the regimes, such that each meets every kind and every space.
+  const std::size_t stride = oracle::plays_all() ? 1 : oracle::kSanitized ? 7 : 2;
+  std::size_t turn = oracle::first_turn(kind.name) + oracle::first_turn(space.name);
   for (const Regime& regime : oracle::kRegimes) {
+    if (++turn % stride != 0) continue;
     for (std::uint64_t round = 0; round < rounds; ++round) {
       const std::string wrong = space.play(kind.options, regime, seed + round);
       if (!wrong.empty()) FAIL() << wrong;
@@ -200,7 +208,7 @@ TEST_P(AnyCell, CountsTheSameWorkForTheSameOps) {
 TEST_P(AnyCell, MemoryIsGivenBackOrReusedWhenAllIsErased) {
   oracle::OpScript<float, 2> script(Regime{.name = "waves", .population = 400, .all_or_nothing = true}, 5);
   std::size_t first_wave = 0;
-  for (int wave = 0; wave < 20; ++wave) {
+  for (int wave = 0; wave < (oracle::kSanitized ? 6 : 20); ++wave) {
     ASSERT_EQ(drain(script.next()), "");
     ASSERT_EQ(drain(script.next()), "");
     if (wave == 1) first_wave = cell_->bytes();
