@@ -124,7 +124,7 @@ double best_cost(const Bins::Scene& scene, const std::vector<BoxValues>& boxes) 
 }
 
 TEST(RowBins, CostAtMostHalfAsMuchAgainAsTheBestRows) {
-  const std::uint64_t mixtures = oracle::plays_all() ? 20 : oracle::kSanitized ? 1 : 8;
+  const std::uint64_t mixtures = oracle::plays_all() ? 200 : oracle::kSanitized ? 1 : 20;
   for (std::uint64_t seed = 1; seed <= mixtures; ++seed) {
     const auto boxes = mixture(seed);
     const auto scene = scene_of(boxes);

@@ -10,7 +10,8 @@ namespace sweepgrid {
 
 /// Whether a step is to sweep all objects or to go through cells, by exact counts of what steps of both kinds took, so
 /// that it is the same on every machine. Cells that were given up have to be made anew, which costs as much as three
-/// sweeps or so: the way that is taken is left when the other one would have saved that much since.
+/// sweeps or so: the way that is taken is left when the other one would have saved that much since. Only a scene's first
+/// cells are made at once, for nothing tells yet that much will change again.
 class MethodChoice {
  public:
   /// Before a step that changes so many of `objects` objects. `cells`: there are some.
@@ -19,8 +20,9 @@ class MethodChoice {
     const double through_cells = change_cost_ * static_cast<double>(changed);
     const double saved = cells ? through_cells - sweep : sweep - through_cells;
     saved_ = std::max(0.0, saved_ + saved);
-    const bool leave = saved_ > kMakeCells * static_cast<double>(objects);
+    const bool leave = saved_ > (had_cells_ ? kMakeCells * static_cast<double>(objects) : 0);
     if (leave) saved_ = 0;
+    had_cells_ = had_cells_ || cells || leave;
     return cells == leave;
   }
 
@@ -55,6 +57,7 @@ class MethodChoice {
   double sweep_cost_ = 15;   // for each object
   double change_cost_ = 80;  // for each change
   double saved_ = 0;         // that the other way would have, since the latest change
+  bool had_cells_ = false;
 };
 
 }  // namespace sweepgrid
