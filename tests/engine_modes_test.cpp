@@ -158,7 +158,8 @@ TEST(EngineModes, ExactEnvelopesStayExact) {
 }
 
 TEST(EngineModes, BulkCallsOfManyObjectsAreRightToo) {
-  Regime many = denormals(oracle::kSanitized && !oracle::plays_all() ? 2500 : 6000);  // enough for shares on several workers
+  Regime many =
+      denormals(oracle::kSanitized && !oracle::plays_all() ? 2500 : 6000);  // enough for shares on several workers
   many.world = 400'000;
   many.steps = 2;
   const Played expected = play<float, 2>(many, {}, Where::kNone, 1, false);

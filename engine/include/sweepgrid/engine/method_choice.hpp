@@ -10,8 +10,8 @@ namespace sweepgrid {
 
 /// Whether a step is to sweep all objects or to go through cells, by exact counts of what steps of both kinds took, so
 /// that it is the same on every machine. Cells that were given up have to be made anew, which costs as much as three
-/// sweeps or so: the way that is taken is left when the other one would have saved that much since. Only a scene's first
-/// cells are made at once, for nothing tells yet that much will change again.
+/// sweeps or so: the way that is taken is left when the other one would have saved that much since. Only a scene's
+/// first cells are made at once, for nothing tells yet that much will change again.
 class MethodChoice {
  public:
   /// Before a step that changes so many of `objects` objects. `cells`: there are some.
